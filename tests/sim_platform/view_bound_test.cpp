@@ -243,7 +243,7 @@ TEST(ViewBound, NoTileOfAnyFrameExceedsIt) {
     for (const Way& way : kWays) {
       ViewedScene scene(named.mesh.view(), way.is_small() ? 8 : 16);
       TestRandom random(seed);
-      for (std::uint32_t i = 0; i < 24; ++i) {
+      for (std::uint32_t i = 0; i < 10; ++i) {
         const Camera camera = any_camera(named.mesh, random);
         const std::uint32_t width = 1 + random.below(kMostPixels), height = 1 + random.below(kMostPixels);
         const float t_far = random.below(4) == 0 ? random.between(0.5f, 3.0f) : kFloatMax;
@@ -258,7 +258,7 @@ TEST(ViewBound, NoTileOfAnyFrameExceedsIt) {
       ++seed;
     }
   }
-  EXPECT_GT(frames, 700u);
+  EXPECT_GT(frames, 300u);
 }
 
 // Where exact arithmetic decides every pixel.
@@ -291,7 +291,6 @@ TEST(ViewBound, IsWithinTenTimesTheWorstTile) {
         const Worst worst = expect_within(scene, *way, *record, named.name);
         EXPECT_LE(worst.most_cycles, 10 * worst.cycles) << named.name << ", " << way->name;
         EXPECT_LE(worst.most_gets, 10 * worst.gets) << named.name << ", " << way->name;
-        std::printf("%s %s %.2f %.2f %.2f\n", named.name, way->name, worst.most_cycles / worst.cycles, double(worst.most_gets) / double(worst.gets), double(worst.most_bytes) / double(worst.bytes));
         EXPECT_LE(worst.most_bytes, 10 * worst.bytes) << named.name << ", " << way->name;
       }
     }

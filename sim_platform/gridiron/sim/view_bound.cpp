@@ -36,7 +36,7 @@ constexpr float kEdgeSlack = 0.4f;
 // decision stores 2^-19 less) and above.
 constexpr double kSumSlack = 0.35, kLessStored = 0.9, kMoreStored = 1.35;
 // An exact decision stores a span of its own.
-constexpr double kStoredSpan = 0x1.01p-17;
+constexpr float kStoredSpan = 0x1.01p-17f;
 // Blocks with more triangles than this, and tiles with more open pixels, are not looked into: each pixel is open, and
 // costs the most.
 constexpr std::size_t kMostOfBlock = 512;
@@ -53,8 +53,8 @@ struct Shape {
   std::uint32_t record;
   std::uint32_t node;  // nodes that the tile had entered when it was queued
   Kind kind;
-  double span;       // of 1 / t
-  double low, high;  // of what may be stored, anywhere in its blocks
+  float span;       // of 1 / t
+  float low, high;  // of what may be stored, anywhere in its blocks
 
   // 1 / t at a pixel.
   [[nodiscard]] double near(std::uint32_t column, std::uint32_t row) const {
@@ -69,7 +69,9 @@ struct BlockPart {
   std::uint16_t possible;  // where it may be hit
   std::uint16_t edges;     // of these, where edges are open
   std::uint16_t open;      // and where it may have to be decided
+  bool is_in_order;        // as of the shape
   std::uint32_t shape;
+  float low, high;         // as of the shape
 
   [[nodiscard]] bool may_be(std::uint32_t pixel) const { return (possible >> pixel & 1u) != 0; }
   [[nodiscard]] bool is_sure(std::uint32_t pixel) const { return (possible >> pixel & ~edges >> pixel & 1) != 0; }
@@ -138,8 +140,11 @@ class TileBounder {
     project_tile(head, scene_.eye, view, Width, tile_);
     shapes_.clear();
     for (auto& block : parts_) block.clear();
-    block_span_.fill(double{floor_of(head)} * 0x1p-16);
-    for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) pixels_[block] = pixels_of(block);
+    block_span_.fill(floor_of(head) * 0x1p-16f);
+    pixels_.fill(kAllPixels);
+    if (columns_ != Width || rows_count_ != Width) {
+      for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) pixels_[block] = pixels_of(block);
+    }
     queued_ = 0;
     drawn_tiny_[0] = drawn_tiny_[1] = drawn_tiny_[2] = 0;
     marked_.clear();
@@ -296,6 +301,18 @@ class TileBounder {
   // Functions of the first `lanes` of the queue: the same, lane by lane, whichever triangles share a group.
   void set_up(std::uint32_t lanes) {
     const TileGroup group = set_up_group<L, Width>(*memory_, tile_, 0, (1u << lanes) - 1, 0.0f);
+    // What each of them may store; sums that round take less than the rest of a span.
+    alignas(16) float lows[kLanes], highs[kLanes];
+    const Int box = Int::load(memory_->boxes), byte = Int::splat(0xFF);
+    const auto reach = [&](int shift) {
+      const Float low = L::to_float(box >> shift & byte), high = L::to_float((box >> (shift + 16)) & byte);
+      return (high - low) * Float(0.5f) + Float(kBlockWidth - 1.0f);
+    };
+    const auto function = [&](std::uint32_t kind) { return Float::load(memory_->functions[kind]); };
+    const Float half = L::abs(function(kNearX)) * reach(0) + L::abs(function(kNearY)) * reach(8) +
+                       Float(static_cast<float>(kMoreStored) + 0.25f) * function(kNearSpan);
+    (function(kNearValue) - half).store(lows);
+    (function(kNearValue) + half).store(highs);
     for (std::uint32_t i = 0; i < lanes; ++i) {
       const bool is_drawn = (group.drawn >> i & 1u) != 0, is_careful = (group.careful >> i & 1u) != 0;
       if (!is_drawn && !is_careful) continue;
@@ -317,7 +334,9 @@ class TileBounder {
       shape.kind = is_careful                        ? Shape::Kind::kCareful
                    : (group.tiny >> i & 1u) != 0 ? Shape::Kind::kTiny
                                                      : Shape::Kind::kDrawn;
-      set_interval(shape, memory_->functions[kNearSpan][i]);
+      shape.span = is_careful ? kInfinity : memory_->functions[kNearSpan][i];
+      shape.low = is_careful ? -kInfinity : lows[i];
+      shape.high = is_careful ? kInfinity : highs[i];
       shapes_.push_back(shape);
     }
     queued_ -= lanes;
@@ -326,25 +345,13 @@ class TileBounder {
     }
   }
 
-  // Of what a shape may store, or of anything where it has no bound.
-  static void set_interval(Shape& shape, float near_span) {
-    shape.span = near_span;
-    if (shape.kind == Shape::Kind::kCareful) {
-      shape.span = shape.high = double{kInfinity};
-      shape.low = -double{kInfinity};
-      return;
-    }
-    const std::uint32_t box = shape.box;
-    const double reach_x = 0.5 * ((box >> 16 & 0xFFu) - (box & 0xFFu)) + (kBlockWidth - 1),
-                 reach_y = 0.5 * ((box >> 24) - (box >> 8 & 0xFFu)) + (kBlockWidth - 1);
-    const double half = double{magnitude(shape.x[3])} * reach_x + double{magnitude(shape.y[3])} * reach_y;
-    shape.low = double{shape.value[3]} - half - kMoreStored * shape.span;
-    shape.high = double{shape.value[3]} + half + kMoreStored * shape.span;
-  }
-
   // Everything is queued.
   void finish() {
     if (queued_ != 0) set_up(queued_);
+    if (shapes_.empty()) {
+      count(TileWork::kFunctionGroup, (kept_ + kLanes - 1) / kLanes);
+      return;
+    }
     has_careful_ = std::ranges::any_of(shapes_, [](const Shape& f) { return f.kind == Shape::Kind::kCareful; });
     const std::uint64_t groups = (kept_ + kLanes - 1) / kLanes;
     count(TileWork::kFunctionGroup, groups);
@@ -543,7 +550,8 @@ class TileBounder {
     if (f.kind == Shape::Kind::kTiny) count(TileWork::kTinyPixel, count_bits(possible));
     if (!is_looked_into()) return;
     const auto bits = static_cast<std::uint16_t>(edges);
-    parts_[block].push_back({static_cast<std::uint16_t>(possible), bits, bits, number});
+    parts_[block].push_back(
+        {static_cast<std::uint16_t>(possible), bits, bits, f.is_in_order(), number, f.low, f.high});
     block_span_[block] = std::max({block_span_[block], f.span, f.high * kStoredSpan});
   }
 
@@ -553,30 +561,30 @@ class TileBounder {
   // Pixels that floats may leave open: those near an edge, and those where two triangles are equally near.
   void settle_blocks() {
     if (!is_looked_into()) return;
-    const double floor = floor_of(scene_.head) * (1.0 + 0x1p-14);
+    const float floor = floor_of(scene_.head) * (1.0f + 0x1p-14f);
     std::uint64_t looked_into = 0;
     for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
       std::vector<BlockPart>& parts = parts_[block];
-      const double span = block_span_[block];
+      if (parts.empty()) continue;
+      // Twice: comparisons of floats may round.
+      const float apart = 2.0f * block_span_[block];
       const bool is_short = parts.size() <= kMostOfBlock;
       std::uint32_t seen = 0;
       for (std::size_t i = 0; i < parts.size(); ++i) {
         BlockPart& part = parts[i];
-        const Shape& f = shapes_[part.shape];
         if (scene_.trusts_floats) {
-          if (f.kind != Shape::Kind::kCareful) part.open = 0;
+          if (shapes_[part.shape].kind != Shape::Kind::kCareful) part.open = 0;
           continue;
         }
         // Nothing was hit: what t_far or an error of 1 / t leaves open.
-        if (!is_short || !(f.low > floor + span)) part.open = part.possible;
-        if ((seen & part.possible & ~part.open) != 0 || !f.is_in_order()) {
-          for (std::size_t j = 0; j < i && is_short; ++j) {
+        if (!is_short || !(part.low > floor + apart)) part.open = part.possible;
+        if (is_short && ((seen & part.possible & ~part.open) != 0 || !part.is_in_order)) {
+          const float low = part.low - apart, high = part.high + apart;
+          for (std::size_t j = 0; j < i; ++j) {
             BlockPart& other = parts[j];
-            if ((part.possible & other.possible) == 0) continue;
-            const Shape& old = shapes_[other.shape];
-            if (f.low > old.high + span || old.low > f.high + span) continue;
+            if ((part.possible & other.possible) == 0 || low > other.high || other.low > high) continue;
             compare(part, other, block);
-            if (!f.is_in_order() || !old.is_in_order()) compare(other, part, block);
+            if (!part.is_in_order || !other.is_in_order) compare(other, part, block);
           }
         }
         seen |= part.possible;
@@ -598,8 +606,9 @@ class TileBounder {
   void compare(BlockPart& part, const BlockPart& old_part, std::uint32_t block) const {
     const Shape &f = shapes_[part.shape], &old = shapes_[old_part.shape];
     // In front at least: surely, or not at all.
-    const double most = kSumSlack * f.span + kMoreStored * old.span + block_span_[block];
-    const double least = -(kMoreStored * f.span + kLessStored * old.span);
+    const double span = f.span, old_span = old.span;
+    const double most = kSumSlack * span + kMoreStored * old_span + double{block_span_[block]};
+    const double least = -(kMoreStored * span + kLessStored * old_span);
     const std::uint32_t column = block % kRow * kBlockWidth, row = block / kRow * kBlockWidth;
     const double apart = f.near(column, row) - old.near(column, row);
     const double right = double{f.x[3]} - double{old.x[3]}, down = double{f.y[3]} - double{old.y[3]};
@@ -616,11 +625,11 @@ class TileBounder {
                                std::uint32_t x, std::uint32_t y) const {
     const Shape& f = shapes_[part.shape];
     if (!f.is_in_order()) return false;
-    const double most = f.near(x, y) + kMoreStored * f.span;
+    const double most = f.near(x, y) + kMoreStored * double{f.span};
     for (const BlockPart* other = parts.data(); other != &part; ++other) {
       if (!other->is_sure(pixel)) continue;
       const Shape& before = shapes_[other->shape];
-      if (before.near(x, y) - kLessStored * before.span > most) return true;
+      if (before.near(x, y) - kLessStored * double{before.span} > most) return true;
     }
     return false;
   }
@@ -707,7 +716,7 @@ class TileBounder {
   std::vector<WaitingChild> stack_;
   std::vector<Shape> shapes_;
   std::array<std::vector<BlockPart>, Memory::kBlocks> parts_;
-  std::array<double, Memory::kBlocks> block_span_{};  // the most that a block's hits may have
+  std::array<float, Memory::kBlocks> block_span_{};  // the most that a block's hits may have
   std::array<std::uint16_t, Memory::kBlocks> pixels_{};  // in the picture
 };
 
