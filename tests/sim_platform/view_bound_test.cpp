@@ -276,6 +276,22 @@ TEST(ViewBound, HoldsWhereNoFloatIsTrusted) {
   }
 }
 
+// Hits as far away as hits may be: exact distances decide which of them count.
+TEST(ViewBound, HoldsAtTheFarthestDistance) {
+  TestMesh wall;
+  for (int i = 0; i < 64; ++i) {
+    const float x = 0.25f * static_cast<float>(i % 8) - 1.0f, y = 0.25f * static_cast<float>(i / 8) - 1.0f;
+    wall.append(make_triangle(Vec3(x, y, 0), Vec3(x + 0.25f, y, 0), Vec3(x, y + 0.25f, 0)));
+  }
+  for (const Way& way : kWays) {
+    ViewedScene scene(wall.view(), way.is_small() ? 8 : 16);
+    // A ray's t is that of the plane.
+    const auto record = scene.frame_of(way, {{0, 0, 2.3f}, {0, 0, 0}, {0, 1, 0}, 0.4f}, 70, 50, 2.3f);
+    ASSERT_TRUE(record);
+    (void)expect_within(scene, way, *record, way.name);
+  }
+}
+
 // The bound is of use: of frames that fill the picture, at most ten times what the worst tile does.
 TEST(ViewBound, IsWithinTenTimesTheWorstTile) {
   const NamedMesh scenes[] = {{"mixed", make_mixed_mesh()},
