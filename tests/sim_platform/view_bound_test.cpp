@@ -84,7 +84,8 @@ class ViewedScene {
     SceneImageError error;
     EXPECT_EQ(open_scene_image(image_.bytes, view_, error), Status::kOk);
     (void)memory_->allocate(kLineBytes);
-    for (sim::MemoryRegion& plane : planes_) plane = *memory_->allocate(output_plane_bytes(kMostPixels, kMostPixels, 64));
+    for (sim::MemoryRegion& plane : planes_)
+      plane = *memory_->allocate(output_plane_bytes(kMostPixels, kMostPixels, 64));
     record_ = *memory_->allocate(sizeof(FrameRecord));
   }
 
@@ -221,7 +222,8 @@ struct NamedMesh {
 std::vector<NamedMesh> make_meshes() {
   std::vector<NamedMesh> meshes;
   meshes.push_back({"mixed", make_mixed_mesh()});
-  meshes.push_back({"two skins", joined(make_torus(40, 24, 0.8f, 0.35f), moved(make_torus(40, 24, 0.8f, 0.35f), 1.000001f))});
+  meshes.push_back(
+      {"two skins", joined(make_torus(40, 24, 0.8f, 0.35f), moved(make_torus(40, 24, 0.8f, 0.35f), 1.000001f))});
   meshes.push_back({"soup", make_random_soup(400, 0.7f, 5)});
   meshes.push_back({"fan", joined(make_sliver_fan(300, 1e-4f), make_height_field(24, 0.2f, 3))});
   TestMesh boxes = make_box(Vec3(-1), Vec3(1));
@@ -297,7 +299,8 @@ TEST(ViewBound, IsWithinTenTimesTheWorstTile) {
   const NamedMesh scenes[] = {{"mixed", make_mixed_mesh()},
                               {"torus", make_torus(60, 30, 0.8f, 0.35f)},
                               {"hills", make_height_field(70, 0.3f, 2)}};
-  const Camera cameras[] = {{{0.3f, 0.9f, 2.0f}, {0, 0, 0}, {0, 1, 0}, 0.45f}, {{0.9f, 0.8f, 0.7f}, {0, 0, 0}, {0, 1, 0}, 0.5f}};
+  const Camera cameras[] = {{{0.3f, 0.9f, 2.0f}, {0, 0, 0}, {0, 1, 0}, 0.45f},
+                            {{0.9f, 0.8f, 0.7f}, {0, 0, 0}, {0, 1, 0}, 0.5f}};
   for (const NamedMesh& named : scenes) {
     for (const Way* const way : {&kWays[0], &kWays[4]}) {
       ViewedScene scene(named.mesh.view(), way->is_small() ? 8 : 16);

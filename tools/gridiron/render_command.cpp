@@ -101,8 +101,7 @@ ReportInput collect_report(const RenderPlan& plan, const SceneInput& input, cons
 WorstTiles collect_worst_tiles(const RenderPlan& plan, FrameMemory& frame, const sim::FrameTrace& trace,
                                const sim::FrameTiming& timing) {
   const WorstMeasured measured = find_worst_measured(trace, timing);
-  const std::span<const std::byte> image =
-      frame.memory.bytes_at(frame.image_address, frame.image.header.image_bytes);
+  const std::span<const std::byte> image = frame.memory.bytes_at(frame.image_address, frame.image.header.image_bytes);
   const WorstOfView bound = find_worst_of_view({frame.record, image, plan.layout.store}, *plan.scene.machine);
   WorstTiles worst;
   worst.tile[0] = measured.tile % frame.record.tiles_x;

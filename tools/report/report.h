@@ -80,7 +80,7 @@ struct ReportInput {
   HostTime load, build, render;
   std::uint32_t host_threads = 1, lanes = 4, repeats = 1;
   std::optional<WorstTiles> worst_tiles;  ///< where bounds are requested
-  std::uint64_t trace_bytes = 0;  ///< packed, as stored for the replay; 0 in plain mode
+  std::uint64_t trace_bytes = 0;          ///< packed, as stored for the replay; 0 in plain mode
 
   std::uint64_t image_hash = 0;
   std::optional<std::uint64_t> depth_hash, ids_hash;  ///< of planes that the frame has

@@ -109,7 +109,8 @@ void settle_depths(const RenderRequest& request, RenderPlan& plan) {
 void require_bound(const RenderPlan& plan) {
   require_view_bound("--bound", plan.engine, plan.layout, plan.accuracy, plan.has_depth);
   if (plan.mode == Mode::kPlain || plan.lanes != kChipLanes || plan.tile) {
-    usage_error("--bound: is compared with the cycles of a frame; --mode plain, --lanes other than 4 and --tile have none");
+    usage_error(
+        "--bound: is compared with the cycles of a frame; --mode plain, --lanes other than 4 and --tile have none");
   }
 }
 

@@ -17,12 +17,12 @@ namespace gridiron::tool {
 /// Bounds of all tiles of one frame, row by row.
 struct WorstOfView {
   std::uint32_t tiles_x = 0, tile_width = 0;
-  std::vector<double> tile_cycles;               ///< the most of each tile, on the machine
-  std::uint32_t tile = 0;                        ///< the one of most cycles
-  TileBound bound{};                             ///< its
-  sim::TileCycles cycles;                        ///< its
+  std::vector<double> tile_cycles;                  ///< the most of each tile, on the machine
+  std::uint32_t tile = 0;                           ///< the one of most cycles
+  TileBound bound{};                                ///< its
+  sim::TileCycles cycles;                           ///< its
   std::uint64_t most_gets = 0, most_get_bytes = 0;  ///< of any tile
-  HostSeconds seconds{};                         ///< that bounding took
+  HostSeconds seconds{};                            ///< that bounding took
 };
 
 /// Bounds the tiles of a frame. Precondition: sim::has_view_bound(). @param machine  with prices in cycles.

@@ -52,7 +52,8 @@ StoreFacts require_layout(const InfoRequest& request, const Configuration& confi
 
 // A view's tiles have bounds, in cycles.
 void require_bound(const InfoPlan& plan) {
-  const auto accuracy = plan.accuracy.value_or(plan.format == TriangleFormat::kLattice ? Accuracy::kCompact : Accuracy::kStandard);
+  const auto accuracy =
+      plan.accuracy.value_or(plan.format == TriangleFormat::kLattice ? Accuracy::kCompact : Accuracy::kStandard);
   require_view_bound("--camera", plan.local_store.engine, plan.layout, accuracy, plan.has_depth);
   const sim::MachineProfile& machine = *plan.scene.machine;
   if (sim::counts_instructions(machine)) {

@@ -62,7 +62,7 @@ struct SceneFacts {
   bool fits = false;                ///< in the machine's main memory
   LoopBounds bounds;                ///< with a grid
   EffectFacts effects;
-  std::optional<WorstTile> worst;  ///< where the image fits, of eye rays through the grid
+  std::optional<WorstTile> worst;            ///< where the image fits, of eye rays through the grid
   std::optional<WorstOfView> worst_of_view;  ///< where it fits and a view is given, of eye rays through the tree
 };
 
