@@ -24,7 +24,7 @@
 #include "gridiron/frame/frame_pictures.h"
 #include "gridiron/frame/requested_frame.h"
 #include "gridiron/frame/unseen_scene.h"
-#include "gridiron/frame/worst_of_view.h"
+#include "gridiron/info/worst_of_view.h"
 #include "gridiron/scene/effect_names.h"
 #include "gridiron/scene/scene_input.h"
 

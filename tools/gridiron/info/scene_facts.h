@@ -11,11 +11,11 @@
 #include <string_view>
 #include <vector>
 
-#include "gridiron/frame/worst_of_view.h"
 #include "gridiron/scene/image_structures.h"
 #include "gridiron/scene/scene_input.h"
 #include "info_plan.h"
 #include "scene_text/scene_description.h"
+#include "worst_of_view.h"
 #include "worst_tile.h"
 
 namespace gridiron::tool {
