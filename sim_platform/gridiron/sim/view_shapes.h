@@ -46,8 +46,7 @@ struct Shape {
   std::uint32_t record;
   std::uint32_t node;  // nodes that the tile had entered when it was queued
   Kind kind;
-  float span;       // of 1 / t
-  float low, high;  // of what may be stored, anywhere in its blocks
+  float span;  // of 1 / t
 
   // 1 / t at a pixel.
   [[nodiscard]] double near(std::uint32_t column, std::uint32_t row) const {
@@ -64,7 +63,7 @@ struct BlockPart {
   std::uint16_t open;      // and where it may have to be decided
   bool is_in_order;        // as of the shape
   std::uint32_t shape;
-  float low, high;  // as of the shape
+  float low, high;  // of what may be stored there
 
   [[nodiscard]] bool may_be(std::uint32_t pixel) const { return (possible >> pixel & 1u) != 0; }
   [[nodiscard]] bool is_sure(std::uint32_t pixel) const { return (possible >> pixel & ~edges >> pixel & 1) != 0; }

@@ -42,6 +42,8 @@ class TileBounder {
     for (auto& block : parts_) block.clear();
     block_span_.fill(floor_of(head) * 0x1p-16f);
     pixels_.fill(kAllPixels);
+    covered_.fill(0);
+    covered_low_.fill(kInfinity);
     if (columns_ != Width || rows_count_ != Width) {
       for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) pixels_[block] = pixels_of(block);
     }
@@ -201,18 +203,6 @@ class TileBounder {
   // Functions of the first `lanes` of the queue: the same, lane by lane, whichever triangles share a group.
   void set_up(std::uint32_t lanes) {
     const TileGroup group = set_up_group<L, Width>(*memory_, tile_, 0, (1u << lanes) - 1, 0.0f);
-    // What each of them may store; sums that round take less than the rest of a span.
-    alignas(16) float lows[kLanes], highs[kLanes];
-    const Int box = Int::load(memory_->boxes), byte = Int::splat(0xFF);
-    const auto reach = [&](int shift) {
-      const Float low = L::to_float(box >> shift & byte), high = L::to_float((box >> (shift + 16)) & byte);
-      return (high - low) * Float(0.5f) + Float(kBlockWidth - 1.0f);
-    };
-    const auto function = [&](std::uint32_t kind) { return Float::load(memory_->functions[kind]); };
-    const Float half = L::abs(function(kNearX)) * reach(0) + L::abs(function(kNearY)) * reach(8) +
-                       Float(static_cast<float>(kMoreStored) + 0.25f) * function(kNearSpan);
-    (function(kNearValue) - half).store(lows);
-    (function(kNearValue) + half).store(highs);
     for (std::uint32_t i = 0; i < lanes; ++i) {
       const bool is_drawn = (group.drawn >> i & 1u) != 0, is_careful = (group.careful >> i & 1u) != 0;
       if (!is_drawn && !is_careful) continue;
@@ -235,8 +225,6 @@ class TileBounder {
                    : (group.tiny >> i & 1u) != 0 ? Shape::Kind::kTiny
                                                  : Shape::Kind::kDrawn;
       shape.span = is_careful ? kInfinity : memory_->functions[kNearSpan][i];
-      shape.low = is_careful ? -kInfinity : lows[i];
-      shape.high = is_careful ? kInfinity : highs[i];
       shapes_.push_back(shape);
     }
     queued_ -= lanes;
@@ -257,16 +245,13 @@ class TileBounder {
     count(TileWork::kFunctionGroup, groups);
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
       const Shape& shape = shapes_[i];
-      std::uint64_t blocks = blocks_of(shape.box);
+      touched_ = 0;
       if (shape.kind == Shape::Kind::kCareful) {
-        mark(shape, blocks);
         for_each_block(shape.box, [&](std::uint32_t block, std::uint32_t pixels) {
           pixels &= pixels_[block];
-          add_part(i, block, pixels, pixels);
+          if (pixels != 0) add_part(i, {-kInfinity, kInfinity}, block, pixels, pixels);
         });
-        continue;
-      }
-      if (shape.kind == Shape::Kind::kTiny) {
+      } else if (shape.kind == Shape::Kind::kTiny) {
         const std::uint32_t lines = (shape.box >> 24) - (shape.box >> 8 & 0xFFu);
         for (std::uint32_t line = 0; line <= lines && line < 3; ++line) ++drawn_tiny_[line];
         const Edges edges(shape);
@@ -274,9 +259,9 @@ class TileBounder {
                        [&](std::uint32_t block, std::uint32_t pixels) { add_tested(i, edges, block, pixels); });
       } else {
         count(TileWork::kDrawn);
-        add_drawn(i, blocks);
+        add_drawn(i);
       }
-      mark(shape, blocks);
+      mark(shape, touched_);
     }
     // Places of tiny triangles: three of each line that one of the group has. Hits change which triangles share a
     // group, but not how many groups there may be with a triangle that has so many lines.
@@ -296,7 +281,7 @@ class TileBounder {
     for (std::size_t i = 0; i < late; ++i) changed_ += marked_[i];
     return std::min(changed_, nodes_ * Memory::kBlocks);
   }
-  // A shape may change these blocks.
+  // A shape may change these blocks: those with pixels that it may hit.
   void mark(const Shape& shape, std::uint64_t blocks) {
     if (shape.node != changed_node_) {
       changed_ += static_cast<std::uint64_t>(std::popcount(changed_blocks_));
@@ -305,13 +290,6 @@ class TileBounder {
     }
     changed_blocks_ |= blocks;
     marked_.push_back(static_cast<std::uint8_t>(std::popcount(blocks)));
-  }
-  [[nodiscard]] static std::uint64_t blocks_of(std::uint32_t box) {
-    const std::uint32_t bx0 = (box & 0xFFu) / kBlockWidth, by0 = (box >> 8 & 0xFFu) / kBlockWidth,
-                        bx1 = (box >> 16 & 0xFFu) / kBlockWidth, by1 = (box >> 24) / kBlockWidth;
-    std::uint64_t blocks = 0;
-    for (std::uint32_t by = by0; by <= by1; ++by) blocks |= std::uint64_t{(2u << bx1) - (1u << bx0)} << (by * kRow);
-    return blocks;
   }
 
   // Calls visit(block, pixels) for the blocks of a box, with its pixels there.
@@ -342,7 +320,7 @@ class TileBounder {
 
   // A shape's edges in lanes.
   struct Edges {
-    Float start[3], down[3], x[3], y[3], offset_x, offset_y, slack, span;
+    Float start[3], x[3], y[3], offset_x, offset_y, slack, span;
 
     explicit Edges(const Shape& f)
         : offset_x(f.offset_x),
@@ -374,16 +352,36 @@ class TileBounder {
   };
   static constexpr std::uint32_t kAllPixels = (1u << kBlockPixels) - 1;
 
+  // What a shape may store in a block; sums that round take less than the rest of a span.
+  struct Interval {
+    float low, high;
+  };
+  [[nodiscard]] static Interval interval_of(const Shape& f, std::uint32_t block) {
+    static constexpr float kMiddle = 0.5f * (kBlockWidth - 1.0f);
+    static constexpr float kRoom = static_cast<float>(kMoreStored) + 0.25f;
+    const float column = kTilePlaces<Width>.block_column[block] + kMiddle - f.offset_x;
+    const float row = kTilePlaces<Width>.block_row[block] + kMiddle - f.offset_y;
+    const float middle = f.value[3] + f.x[3] * column + f.y[3] * row;
+    const float half = (magnitude(f.x[3]) + magnitude(f.y[3])) * kMiddle + kRoom * f.span;
+    return {middle - half, middle + half};
+  }
+  // Whether all pixels of a block surely have hits in front of all of a shape when it is drawn: as is_hidden().
+  [[nodiscard]] bool is_covered(const Shape& f, const Interval& interval, std::uint32_t block) const {
+    return f.is_in_order() && covered_[block] == pixels_[block] && interval.high < covered_low_[block];
+  }
+
   // A block tested pixel by pixel. @param pixels  that are tested.
   void add_tested(std::uint32_t number, const Edges& edges, std::uint32_t block, std::uint32_t pixels) {
+    const Interval interval = interval_of(shapes_[number], block);
+    if (is_covered(shapes_[number], interval, block)) return;
     std::uint32_t possible = 0, sure = 0;
     edges.test(block, possible, sure);
     possible &= pixels & pixels_[block];
-    if (possible != 0) add_part(number, block, possible, possible & ~sure);
+    if (possible != 0) add_part(number, interval, block, possible, possible & ~sure);
   }
 
-  // A triangle that is drawn block by block. @param blocks  of its box; gets those that it may change.
-  void add_drawn(std::uint32_t number, std::uint64_t& blocks) {
+  // A triangle that is drawn block by block.
+  void add_drawn(std::uint32_t number) {
     const Shape& f = shapes_[number];
     const Edges edges(f);
     const std::uint32_t bx0 = (f.box & 0xFFu) / kBlockWidth, by0 = (f.box >> 8 & 0xFFu) / kBlockWidth,
@@ -396,7 +394,6 @@ class TileBounder {
       }
       return;
     }
-    blocks = 0;
     const auto& places = kTilePlaces<Width>;
     const Float zero(0.0f), last(kBlockWidth - 1.0f);
     Float most[3], covers[3];
@@ -425,7 +422,6 @@ class TileBounder {
         }
         const std::uint32_t all = ~L::sign_bits(none) & here, part = L::sign_bits(partial) & all;
         const std::uint32_t base = by * kRow + group * kLanes;
-        blocks |= std::uint64_t{all} << base;
         tested += count_bits(part);
         covered += count_bits(~L::sign_bits(whole) & all);
         for (std::uint32_t rest = part; rest != 0; rest &= rest - 1) {
@@ -433,7 +429,10 @@ class TileBounder {
         }
         for (std::uint32_t rest = all & ~part; rest != 0; rest &= rest - 1) {
           const std::uint32_t block = base + lowest_bit(rest);
-          if (pixels_[block] != 0) add_part(number, block, pixels_[block], 0);
+          const Interval interval = interval_of(f, block);
+          if (pixels_[block] != 0 && !is_covered(f, interval, block)) {
+            add_part(number, interval, block, pixels_[block], 0);
+          }
         }
       }
     }
@@ -446,13 +445,20 @@ class TileBounder {
     if (scene_.has_facing) count(TileWork::kFacingBlock, tested + covered);
   }
 
-  void add_part(std::uint32_t number, std::uint32_t block, std::uint32_t possible, std::uint32_t edges) {
+  void add_part(std::uint32_t number, const Interval& interval, std::uint32_t block, std::uint32_t possible,
+                std::uint32_t edges) {
     const Shape& f = shapes_[number];
     if (f.kind == Shape::Kind::kTiny) count(TileWork::kTinyPixel, count_bits(possible));
+    touched_ |= std::uint64_t{1} << block;
+    if (const std::uint32_t sure = possible & ~edges & ~std::uint32_t{covered_[block]}; sure != 0) {
+      covered_[block] = static_cast<std::uint16_t>(covered_[block] | sure);
+      covered_low_[block] = std::min(covered_low_[block], interval.low);
+    }
     if (!is_looked_into()) return;
     const auto bits = static_cast<std::uint16_t>(edges);
-    parts_[block].push_back({static_cast<std::uint16_t>(possible), bits, bits, f.is_in_order(), number, f.low, f.high});
-    block_span_[block] = std::max({block_span_[block], f.span, f.high * kStoredSpan});
+    parts_[block].push_back(
+        {static_cast<std::uint16_t>(possible), bits, bits, f.is_in_order(), number, interval.low, interval.high});
+    block_span_[block] = std::max({block_span_[block], f.span, interval.high * kStoredSpan});
   }
 
   // Whether any pixel may be decided: Accuracy::kFast decides those of triangles without a bound.
@@ -618,6 +624,10 @@ class TileBounder {
   std::array<std::vector<BlockPart>, Memory::kBlocks> parts_;
   std::array<float, Memory::kBlocks> block_span_{};      // the most that a block's hits may have
   std::array<std::uint16_t, Memory::kBlocks> pixels_{};  // in the picture
+  // Pixels of each block that what comes before surely hits, until all are; and 1 / t of the farthest of these.
+  std::array<std::uint16_t, Memory::kBlocks> covered_{};
+  std::array<float, Memory::kBlocks> covered_low_{};
+  std::uint64_t touched_ = 0;  // blocks that the current shape may change
 };
 
 }  // namespace gridiron::sim::view
