@@ -31,9 +31,9 @@ struct ViewFrame {
 ///
 /// A tile goes down the tree with the kernel's own tests, but nothing is hidden: no node, leaf, triangle or block is
 /// left out for what was hit before. What is kept depends on the tile alone, whatever hits there are, and
-/// every count of the kernel is one of things that are kept here too. Which of a triangle's pixels floats may leave
-/// open follows from where its edges cross the rows of pixels, and from which other triangles of the row are as near;
-/// of such pixels alone doubles and integers are counted by asking them.
+/// every count of the kernel is one of things that are kept here too. Floats may leave open those of a triangle's
+/// pixels that lie near an edge, or where another triangle of the block is as near; of such pixels alone doubles and
+/// integers are counted by asking them.
 class ViewBound {
  public:
   /// Borrows the image. Precondition: has_view_bound().
@@ -42,7 +42,8 @@ class ViewBound {
   ViewBound(ViewBound&&) noexcept;  ///< leaves a bound that can only be destroyed
 
   /// The most of one tile. @param tile_id  below tiles_x * tiles_y.
-  /// Errors: throws std::bad_alloc. Cost: linear in what lies in the tile, but for rows with hundreds of triangles.
+  /// Errors: throws std::bad_alloc. Cost: linear in what lies in the tile, but quadratic in up to
+  /// 512 triangles of one block of 4 x 4 pixels.
   [[nodiscard]] TileBound of(std::uint32_t tile_id);
 
  private:
