@@ -102,7 +102,9 @@ WorstTiles collect_worst_tiles(const RenderPlan& plan, FrameMemory& frame, const
                                const sim::FrameTiming& timing) {
   const WorstMeasured measured = find_worst_measured(trace, timing);
   const std::span<const std::byte> image = frame.memory.bytes_at(frame.image_address, frame.image.header.image_bytes);
-  const WorstOfView bound = find_worst_of_view({frame.record, image, plan.layout.store}, *plan.scene.machine);
+  sim::MachineProfile machine = *plan.scene.machine;
+  machine.core_count = plan.cores;  // that share the channel
+  const WorstOfView bound = find_worst_of_view({frame.record, image, plan.layout.store}, machine);
   WorstTiles worst;
   worst.tile[0] = measured.tile % frame.record.tiles_x;
   worst.tile[1] = measured.tile / frame.record.tiles_x;
