@@ -54,18 +54,22 @@ Json json_of_count(std::uint64_t count) {
   return count == ~std::uint64_t{0} ? Json() : Json(count);
 }
 
+// Kinds of work that a bound has any of.
+Json work_json(const TileBound& bound, const sim::EngineWork& engine) {
+  Json work = Json::object();
+  for (std::uint32_t kind = 0; kind < engine.kind_count(); ++kind) {
+    if (sim::is_charged_as_event(WorkId(kind)) || bound.work[kind] == 0) continue;
+    work[std::string(sim::work_kind(WorkId(kind), engine).name)] = json_of_count(bound.work[kind]);
+  }
+  return work;
+}
+
 // The unit of a bound's cycles.
 const char* unit_of(const WorstTile& worst) {
   return worst.are_instructions ? "instructions" : "cycles";
 }
 
 Json json_of(const WorstTile& worst) {
-  Json work = Json::object();
-  for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
-    if (!sim::is_charged_as_event(WorkId(kind)) && worst.bound.work[kind] != 0) {
-      work[std::string(sim::work_kind(WorkId(kind)).name)] = json_of_count(worst.bound.work[kind]);
-    }
-  }
   return {{"accuracy", accuracy_name(worst.frame.accuracy)},
           {"depth", worst.frame.has_depth},
           {"lanes", worst.layout.lanes},
@@ -76,7 +80,7 @@ Json json_of(const WorstTile& worst) {
           {"triangle_runs", worst.scene.runs},
           {"most_cell_triangles", worst.scene.most_cell_triangles},
           {"most_macro_cell_triangles", worst.scene.most_macro_triangles},
-          {"work", work},
+          {"work", work_json(worst.bound, sim::kGridEngine)},
           {"dma",
            {{"gets", json_of_count(worst.bound[Work::kGetIssue])},
             {"puts", json_of_count(worst.bound[Work::kPutIssue])},
@@ -89,6 +93,30 @@ Json json_of(const WorstTile& worst) {
             {"commands", worst.cycles.commands},
             {"transfers", worst.cycles.transfers},
             {"total", worst.cycles.total()}}}};
+}
+
+Json json_of(const InfoPlan& plan, const WorstOfView& worst) {
+  return {{"accuracy", accuracy_name(plan.accuracy.value_or(Accuracy::kStandard))},
+          {"depth", false},
+          {"lanes", 4},
+          {"tile_width", worst.tile_width},
+          {"tile", {worst.tile % worst.tiles_x, worst.tile / worst.tiles_x}},
+          {"work", work_json(worst.bound, sim::kTreeEngine)},
+          {"dma",
+           {{"gets", worst.most_gets},
+            {"puts", worst.bound[Work::kPutIssue]},
+            {"waits", worst.bound[Work::kWait]},
+            {"get_bytes", worst.most_get_bytes},
+            {"put_bytes", worst.bound.put_bytes}}},
+          {"cycles_are", "cycles"},
+          {"cycles",
+           {{"work", worst.cycles.work},
+            {"commands", worst.cycles.commands},
+            {"transfers", worst.cycles.transfers},
+            {"total", worst.cycles.total()}}},
+          {"tiles", worst.tile_cycles},
+          {"seconds", worst.seconds.wall},
+          {"processor_seconds", worst.seconds.processor}};
 }
 
 std::uint64_t tiles_across(std::uint32_t pixels, std::uint32_t tile_width) {
@@ -204,7 +232,9 @@ void print_json(const InfoPlan& plan, const SceneFacts& facts) {
                                       {"least", facts.roundness.least_tolerance},
                                       {"most", facts.roundness.most_tolerance}};
   }
-  document["worst_tile"] = facts.worst ? json_of(*facts.worst) : Json();
+  document["worst_tile"] = facts.worst           ? json_of(*facts.worst)
+                           : facts.worst_of_view ? json_of(plan, *facts.worst_of_view)
+                                                 : Json();
   document["loops"] = facts.worst ? loops_json(plan, facts) : Json();
   std::printf("%s\n", document.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
 }
@@ -338,6 +368,16 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
     const std::string gets = words_of_most(worst.bound[Work::kGetIssue]) + " gets of ";
     print_line("worst tile", "for any camera" + asked + text + gets + words_of_most(worst.bound.get_bytes) + " bytes");
   }
+  if (facts.worst_of_view) {
+    const WorstOfView& worst = *facts.worst_of_view;
+    const auto words = [](double cycles) { return words_of_count(static_cast<std::uint64_t>(cycles)); };
+    print_line("worst tile", "for this camera at most " + words(worst.cycles.work) + " cycles of work, " +
+                                 words(worst.cycles.total()) + " with all waits: tile " +
+                                 std::to_string(worst.tile % worst.tiles_x) + "," +
+                                 std::to_string(worst.tile / worst.tiles_x));
+    print_line("", "of any tile at most " + words_of_count(worst.most_gets, "get") + " of " +
+                       words_of_count(worst.most_get_bytes, "byte"));
+  }
 }
 
 }  // namespace
@@ -345,11 +385,13 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
 void run_command(const InfoRequest& request) {
   const KnownScene foreseen = foreseen_scene(request.scene);
   if (foreseen.kind != SceneKind::kUnknown) (void)resolve(request, foreseen);
+  std::optional<ViewRequest> view;
+  if (request.camera) view = read_camera_file(*request.camera);
   const SceneInput input =
       read_scene_input(request.scene.input, request.scene.tolerance, PictureRequest{.size = request.size});
   const InfoPlan plan = resolve(request, known_scene(input));
   if (!request.scene.quiet) tell_notes(input);
-  const SceneFacts facts = collect_scene_facts(plan, input);
+  const SceneFacts facts = collect_scene_facts(plan, input, view);
   plan.json ? print_json(plan, facts) : print_text(plan, facts);
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +24,7 @@
 #include "gridiron/frame/frame_pictures.h"
 #include "gridiron/frame/requested_frame.h"
 #include "gridiron/frame/unseen_scene.h"
+#include "gridiron/info/worst_of_view.h"
 #include "gridiron/scene/effect_names.h"
 #include "gridiron/scene/scene_input.h"
 
@@ -93,6 +95,37 @@ ReportInput collect_report(const RenderPlan& plan, const SceneInput& input, cons
   if (plan.outputs.depth) report.depth_hash = repeated.hashes.depth;
   if (plan.outputs.ids) report.ids_hash = repeated.hashes.ids;
   return report;
+}
+
+// What the worst tile took, and what any may take with this camera.
+WorstTiles collect_worst_tiles(const RenderPlan& plan, FrameMemory& frame, const sim::FrameTrace& trace,
+                               const sim::FrameTiming& timing) {
+  const WorstMeasured measured = find_worst_measured(trace, timing);
+  const std::span<const std::byte> image = frame.memory.bytes_at(frame.image_address, frame.image.header.image_bytes);
+  sim::MachineProfile machine = *plan.scene.machine;
+  machine.core_count = plan.cores;  // that share the channel
+  const WorstOfView bound = find_worst_of_view({frame.record, image, plan.layout.store}, machine);
+  WorstTiles worst;
+  worst.tile[0] = measured.tile % frame.record.tiles_x;
+  worst.tile[1] = measured.tile / frame.record.tiles_x;
+  worst.bound_tile[0] = bound.tile % frame.record.tiles_x;
+  worst.bound_tile[1] = bound.tile / frame.record.tiles_x;
+  worst.cycles = measured.cycles;
+  worst.bound_cycles = bound.cycles.total();
+  worst.gets = measured.gets;
+  worst.bound_gets = bound.most_gets;
+  worst.get_bytes = measured.get_bytes;
+  worst.bound_get_bytes = bound.most_get_bytes;
+  worst.time = time_of(bound.seconds);
+  return worst;
+}
+
+void print_worst_tiles(const WorstTiles& worst) {
+  const auto words = [](double cycles) { return words_of_count(static_cast<std::uint64_t>(cycles)); };
+  std::printf("worst tile: %s cycles, at most %s with this camera; %s gets of %s bytes, at most %s of %s\n",
+              words(worst.cycles).c_str(), words(worst.bound_cycles).c_str(), words_of_count(worst.gets).c_str(),
+              words_of_count(worst.get_bytes).c_str(), words_of_count(worst.bound_gets).c_str(),
+              words_of_count(worst.bound_get_bytes).c_str());
 }
 
 void print_picture(const RenderPlan& plan, const Picture<std::uint32_t>& color, std::uint64_t hash) {
@@ -171,9 +204,11 @@ void run_command(const RenderRequest& request) {
   const FrameMemory& frame = *memory;
   const Picture<std::uint32_t> color = plane_words(frame, plan, frame.color);
   sim::FrameTiming timing;
+  std::optional<WorstTiles> worst;
   if (has_time(plan)) {
     timing = sim::replay(repeated.result.trace, *plan.scene.machine,
-                         {.core_count = plan.cores, .timeline = outputs.timeline.has_value()});
+                         {.core_count = plan.cores, .timeline = outputs.timeline.has_value() || plan.has_bound});
+    if (plan.has_bound) worst = collect_worst_tiles(plan, *memory, repeated.result.trace, timing);
   }
 
   AtomicFiles files;
@@ -184,7 +219,9 @@ void run_command(const RenderRequest& request) {
   }
   if (outputs.ids) files.add(*outputs.ids, encode_pfm(id_picture(plane_words(frame, plan, frame.ids))));
   if (outputs.report) {
-    files.add(*outputs.report, report_json(collect_report(plan, input, frame, repeated, timing)));
+    ReportInput report = collect_report(plan, input, frame, repeated, timing);
+    report.worst_tiles = worst;
+    files.add(*outputs.report, report_json(report));
   }
   if (outputs.timeline) files.add(*outputs.timeline, timeline_json(timing, *plan.scene.machine));
   files.commit_at_end();
@@ -193,6 +230,7 @@ void run_command(const RenderRequest& request) {
   if (!plan.tile) tell_note(input.path, unseen_note(*memory, repeated.result, plan.mode));
   print_picture(plan, color, repeated.hashes.color);
   if (has_time(plan)) print_timing(plan, timing);
+  if (worst) print_worst_tiles(*worst);
   const std::string least = plan.repeats > 1 ? ", the least of " + std::to_string(plan.repeats) : "";
   std::printf("host: %.3f s to load, %.3f s to build, %.3f s to render on %s (%.3f s of processor time)%s\n",
               input.load_seconds.wall, repeated.build.wall, repeated.render.wall,

@@ -96,6 +96,16 @@ Json work_json(const sim::WorkTotals& work, const sim::EngineWork& engine) {
   return json;
 }
 
+Json worst_json(const WorstTiles& worst) {
+  const auto one = [](const std::uint32_t(&tile)[2], double cycles, std::uint64_t gets, std::uint64_t bytes) {
+    return Json{{"tile", {tile[0], tile[1]}}, {"cycles", cycles}, {"gets", gets}, {"get_bytes", bytes}};
+  };
+  return {{"measured", one(worst.tile, worst.cycles, worst.gets, worst.get_bytes)},
+          {"bound", one(worst.bound_tile, worst.bound_cycles, worst.bound_gets, worst.bound_get_bytes)},
+          {"bound_seconds", worst.time.seconds},
+          {"bound_processor_seconds", worst.time.processor_seconds}};
+}
+
 Json stages_json(const std::vector<sim::CoreTiming>& cores) {
   Json stages = Json::array();
   const std::array<sim::StageTiming, kStageCount> sums = stage_sums(cores);
@@ -161,6 +171,7 @@ std::string report_json(const ReportInput& input) {
         {"cycles", input.timing.frame_cycles}, {"seconds", seconds}, {"fps", seconds > 0 ? 1 / seconds : 0.0}};
     report["cores"] = std::move(cores);
     report["work"] = work_json(input.work, *input.timing.engine);
+    if (input.worst_tiles) report["worst_tile"] = worst_json(*input.worst_tiles);
   }
   report["effects"] = effects_json(input);
   report["local_store"] = local_store_json(input);

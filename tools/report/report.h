@@ -40,6 +40,15 @@ struct HostTime {
   double seconds = 0, processor_seconds = 0;  ///< processor: of all threads
 };
 
+/// The most of any tile: what was done, and its bound for the frame's camera.
+struct WorstTiles {
+  std::uint32_t tile[2] = {}, bound_tile[2] = {};  ///< column and row of the one with most cycles
+  double cycles = 0, bound_cycles = 0;
+  std::uint64_t gets = 0, bound_gets = 0;
+  std::uint64_t get_bytes = 0, bound_get_bytes = 0;
+  HostTime time;  ///< of finding the bounds
+};
+
 /// The contents of a report.
 struct ReportInput {
   std::string mode = "checked";  ///< of the simulator
@@ -70,7 +79,8 @@ struct ReportInput {
 
   HostTime load, build, render;
   std::uint32_t host_threads = 1, lanes = 4, repeats = 1;
-  std::uint64_t trace_bytes = 0;  ///< packed, as stored for the replay; 0 in plain mode
+  std::optional<WorstTiles> worst_tiles;  ///< where bounds are requested
+  std::uint64_t trace_bytes = 0;          ///< packed, as stored for the replay; 0 in plain mode
 
   std::uint64_t image_hash = 0;
   std::optional<std::uint64_t> depth_hash, ids_hash;  ///< of planes that the frame has

@@ -78,7 +78,7 @@ TEST(Info, TellsWhatAnImageHolds) {
   }
 }
 
-// By default: the tree and its layout; a tile of eye rays through it has no bound yet.
+// By default: the tree and its layout; a tile of eye rays through it has a bound for a camera alone.
 TEST(Info, TellsTheTreeOfBest) {
   const TemporaryFolder folder("a.ply", make_scene());
   const Json info = info_json(folder, {"a.ply"});
@@ -88,6 +88,42 @@ TEST(Info, TellsTheTreeOfBest) {
   EXPECT_TRUE(info["worst_tile"].is_null());
   EXPECT_TRUE(info_json(folder, with_reference({"a.ply"}))["tree"].is_null());
   EXPECT_NE(run(folder, {"info", "a.ply"}).out.find("\nconfiguration  best\n"), std::string::npos);
+}
+
+// With a camera: the bound of each tile of its view, in both stores.
+TEST(Info, TellsTheWorstTileOfAView) {
+  const TemporaryFolder folder("a.ply", make_scene());
+  folder.write("a.camera", "eye 0 1 3\nat 0 0 0\n");
+  const Words view = {"a.ply", "--camera", "a.camera", "--size", "200x100", "--shading", "none"};
+  const Json info = info_json(folder, view);
+  const Json& worst = info["worst_tile"];
+  EXPECT_EQ(worst["accuracy"], "standard");
+  EXPECT_EQ(worst["tile_width"], 64);
+  EXPECT_EQ(worst["tiles"].size(), 4 * 2);
+  const std::size_t tile = worst["tile"][1].get<std::size_t>() * 4 + worst["tile"][0].get<std::size_t>();
+  EXPECT_EQ(worst["tiles"][tile], worst["cycles"]["total"]);
+  for (const Json& cycles : worst["tiles"]) EXPECT_LE(cycles, worst["cycles"]["total"]);
+  EXPECT_GT(worst["work"]["leaf"], 0);
+  EXPECT_GT(worst["work"]["shaded_group"], 0);
+  EXPECT_FALSE(worst["work"].contains("packet_start"));
+  EXPECT_GT(worst["dma"]["get_bytes"], 512);
+  EXPECT_TRUE(info["loops"].is_null());
+
+  const Json simple = info_json(folder, {"a.ply", "--camera", "a.camera", "--size", "200x100"})["worst_tile"];
+  EXPECT_GT(simple["work"]["facing_block"], 0);
+  EXPECT_GT(simple["cycles"]["work"], worst["cycles"]["work"]);
+  EXPECT_EQ(info_json(folder, view + Words{"--store", "64"})["worst_tile"]["tiles"].size(), 13 * 7);
+  EXPECT_NE(run(folder, Words{"info"} + view).out.find("\nworst tile     for this camera at most "), std::string::npos);
+}
+
+TEST(Info, HasNoBoundOfAViewWhereThereIsNone) {
+  const TemporaryFolder folder("a.ply", make_scene());
+  folder.write("a.camera", "eye 0 1 3\nat 0 0 0\n");
+  const Words cases[] = {{"--configuration", "grid"}, {"--depth"}, {"--accuracy", "compact"}, {"--machine", "fu540"}};
+  for (const Words& words : cases) {
+    expect_failure(folder, Words{"info", "a.ply", "--camera", "a.camera"} + words, 2,
+                   "--camera: tiles have a bound for a view with configuration best");
+  }
 }
 
 // The bound of a tile, on the counts that it is made of, and each loop's.

@@ -234,6 +234,27 @@ TEST(Render, TheReportHoldsWhatWasRendered) {
 }
 
 // What the command line does not say is decided so that the frame can be rendered.
+// The worst tile beside its bound for the camera, printed and in the report.
+TEST(Render, BoundsTheTilesOfAView) {
+  const TemporaryFolder folder("a.ply", make_torus(40, 30, 1.0f, 0.4f));
+  for (const char* const store : {"64", "256"}) {
+    const Words words = {"render", "a.ply", "--size", "150x100", "--store", store, "--report", "a.json"};
+    const std::string out = run(folder, words + Words{"--bound"}).out;
+    EXPECT_NE(out.find("\nworst tile: "), std::string::npos) << out;
+    const Json report = Json::parse(read_file(folder.path("a.json")));
+    const Json &measured = report["worst_tile"]["measured"], &bound = report["worst_tile"]["bound"];
+    for (const char* const key : {"cycles", "gets", "get_bytes"}) {
+      EXPECT_GT(measured[key], 0);
+      EXPECT_LE(measured[key], bound[key]);
+      EXPECT_LE(bound[key].get<double>(), 10 * measured[key].get<double>()) << key << ", " << store << " KB";
+    }
+    run(folder, words);
+    EXPECT_FALSE(Json::parse(read_file(folder.path("a.json"))).contains("worst_tile"));
+  }
+  expect_failure(folder, {"render", "a.ply", "--bound", "--configuration", "grid"}, 2, "--bound: tiles have a bound");
+  expect_failure(folder, {"render", "a.ply", "--bound", "--mode", "plain"}, 2, "--bound: is compared with the cycles");
+}
+
 TEST(Render, TheDefaultConfigurationIsTheBestThatCanRender) {
   const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
   run(folder, with_reference({"pack", "a.ply", "-o", "reference.gri"}));

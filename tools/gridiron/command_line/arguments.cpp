@@ -68,10 +68,15 @@ Finish add_info(CLI::App& app) {
   add_packet(app, info.layout.packet_width);
   add_accuracy(app, info.accuracy);
   app.add_flag("--depth", info.has_depth, "distances too");
+  add_parsed(
+      app, "--camera", info.camera, [](const std::string& text) { return std::optional(input_path(text)); },
+      "a file name", "FILE", "with best: what tiles take at most with this camera; - is standard input");
+  add_choice(app, "--shading", info.shading, Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
+             "of these tiles (default simple)");
   app.add_flag("--json", info.json, "as JSON");
   add_quiet(app, info.scene.quiet);
   return [asked] {
-    complete_scene(asked->request.scene, asked->machine);
+    complete_scene(asked->request.scene, asked->machine, asked->request.camera);
     return asked->request;
   };
 }

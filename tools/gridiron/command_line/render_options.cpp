@@ -57,6 +57,10 @@ void add_output_options(CLI::App& app, RenderRequest& render) {
              "than 4, --tile)");
   add_output(app, "--timeline", outputs.timeline,
              "what each core did when, Chrome trace format; not with --mode plain");
+  app.add_flag(
+      "--bound", render.has_bound,
+      "what the tiles of best may take for this camera too, in the report and beside the worst tile; takes about "
+      "as long as the frame");
   add_count(app, "--repeat", render.repeats, 1, 1000,
             "build and render N times and print the least of the host's times (default 1)");
   add_quiet(app, render.scene.quiet);

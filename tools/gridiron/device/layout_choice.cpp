@@ -1,6 +1,8 @@
 // Layout choice. SPDX-License-Identifier: Apache-2.0
 #include "layout_choice.h"
 
+#include <gridiron/sim/view_bound.h>
+
 #include <algorithm>
 #include <string>
 
@@ -118,6 +120,19 @@ void require_distances(const sim::LayoutChoice& layout, bool has_depth) {
   if (!has_depth || !layout.has_effects || layout.store != StoreSize::k64KB) return;
   usage_error("--depth: --shading scene has no distances with " + words_of_layout(layout) +
               ", which are those of a 64 KB store; --store 256 without --tile-width and --packet has them");
+}
+
+void require_view_bound(const char* option, EngineId engine, const sim::LayoutChoice& layout, Accuracy accuracy,
+                        bool has_depth) {
+  FrameHead head{};
+  head.engine_id = static_cast<std::uint32_t>(engine);
+  head.tile_width = layout.tile_width;
+  head.accuracy = static_cast<std::uint32_t>(accuracy);
+  head.shading = static_cast<std::uint32_t>(layout.has_effects ? Shading::kScene : Shading::kSimple);
+  head.depth_address = has_depth ? 1 : 0;
+  if (sim::has_view_bound(head, layout.store)) return;
+  usage_error(std::string(option) + ": tiles have a bound for a view with configuration best and no effects, " +
+              "without distances and not with --accuracy compact");
 }
 
 void require_effects_of(std::optional<Accuracy> accuracy) {

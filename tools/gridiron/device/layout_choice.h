@@ -53,6 +53,11 @@ void require_grid_for(const Configuration& configuration, std::span<const GridOp
 /// Errors: Failure (kUsage) if distances are requested of a layout without them.
 void require_distances(const sim::LayoutChoice& layout, bool has_depth);
 
+/// Errors: Failure (kUsage) if tiles of such frames have no bound for a view (sim::has_view_bound).
+/// @param option  that requires it, with its dashes.
+void require_view_bound(const char* option, EngineId engine, const sim::LayoutChoice& layout, Accuracy accuracy,
+                        bool has_depth);
+
 /// Errors: Failure (kUsage) if effects cannot be rendered with an accuracy.
 void require_effects_of(std::optional<Accuracy> accuracy);
 

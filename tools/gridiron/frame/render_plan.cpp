@@ -105,6 +105,15 @@ void settle_depths(const RenderRequest& request, RenderPlan& plan) {
   }
 }
 
+// Tiles have bounds where a whole frame is timed.
+void require_bound(const RenderPlan& plan) {
+  require_view_bound("--bound", plan.engine, plan.layout, plan.accuracy, plan.has_depth);
+  if (plan.mode == Mode::kPlain || plan.lanes != kChipLanes || plan.tile) {
+    usage_error(
+        "--bound: is compared with the cycles of a frame; --mode plain, --lanes other than 4 and --tile have none");
+  }
+}
+
 // The techniques of the configuration, without those that are switched off.
 std::uint32_t techniques_of(const RenderRequest& request, const Configuration& configuration) {
   const auto bit = [](bool is_off, std::uint32_t technique) { return is_off ? technique : 0u; };
@@ -178,7 +187,8 @@ RenderPlan resolve(const RenderRequest& request, const KnownScene& scene, const 
                   .mode = request.mode,
                   .completion = request.completion,
                   .seed = request.seed.value_or(0),
-                  .repeats = request.repeats};
+                  .repeats = request.repeats,
+                  .has_bound = request.has_bound};
   const CountPair size = request.size.value_or(scene.size.value_or(kUsualPictureSize));
   plan.width = size.x;
   plan.height = size.y;
@@ -187,6 +197,7 @@ RenderPlan resolve(const RenderRequest& request, const KnownScene& scene, const 
   plan.techniques = techniques_of(request, *plan.scene.configuration);
   plan.layout = layout_of(request, plan);
   settle_depths(request, plan);
+  if (plan.has_bound) require_bound(plan);
   plan.threads = threads_of(request, plan, host);
   return plan;
 }

@@ -45,6 +45,7 @@ struct RenderRequest {
   sim::Completion completion = sim::Completion::kEarly;
   std::optional<std::uint64_t> seed;
   std::uint32_t repeats = 1;  ///< the frame is built and rendered so often
+  bool has_bound = false;     ///< of its tiles, for its camera
 
   /// Adds the picture's default name if none is given: INPUT's name with .png.
   [[nodiscard]] FrameOutputs named_outputs() const;
@@ -79,6 +80,7 @@ struct RenderPlan {
   sim::Completion completion = sim::Completion::kEarly;
   std::uint64_t seed = 0;
   std::uint32_t repeats = 1;
+  bool has_bound = false;  ///< of tiles, for the camera
 };
 
 /// Rejects impossible requests, whatever the scene is. Errors: Failure (kUsage).

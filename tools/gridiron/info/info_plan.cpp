@@ -50,6 +50,17 @@ StoreFacts require_layout(const InfoRequest& request, const Configuration& confi
   return *facts;
 }
 
+// A view's tiles have bounds, in cycles.
+void require_bound(const InfoPlan& plan) {
+  const auto accuracy =
+      plan.accuracy.value_or(plan.format == TriangleFormat::kLattice ? Accuracy::kCompact : Accuracy::kStandard);
+  require_view_bound("--camera", plan.local_store.engine, plan.layout, accuracy, plan.has_depth);
+  const sim::MachineProfile& machine = *plan.scene.machine;
+  if (sim::counts_instructions(machine)) {
+    usage_error("--machine " + std::string(machine.name) + ": counts instructions; a bound for a view is in cycles");
+  }
+}
+
 // The option that requires triangles of Accuracy::kPaper.
 const char* projection_option(const InfoRequest& request) {
   if (request.accuracy == Accuracy::kPaper) return "--accuracy paper";
@@ -63,6 +74,7 @@ InfoPlan resolve(const InfoRequest& request, const KnownScene& scene) {
                 .format = triangle_format_of(request),
                 .accuracy = request.accuracy,
                 .has_depth = request.has_depth,
+                .shading = request.shading,
                 .size = request.size.value_or(scene.size.value_or(kUsualPictureSize)),
                 .json = request.json};
   // A packed scene uses the store that a mesh would get.
@@ -81,6 +93,7 @@ InfoPlan resolve(const InfoRequest& request, const KnownScene& scene) {
   plan.layout = layout_of(request, configuration, plan.store, scene.has_effects);
   plan.local_store = require_layout(request, configuration, plan.layout);
   plan.depths = configuration.depths.within(plan.local_store.most_depths);
+  if (request.camera) require_bound(plan);
   if (is_text && plan.store == StoreSize::k64KB) plan.most_macro_width = plan.local_store.max_macro_width;
   return plan;
 }

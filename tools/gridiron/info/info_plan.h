@@ -6,6 +6,7 @@
 #include <gridiron/sim/sim_chip.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 
 #include "base/numbers.h"
@@ -18,11 +19,13 @@ namespace gridiron::tool {
 /// The request for `info`, as given. resolve() completes it.
 struct InfoRequest {
   SceneRequest scene;
-  LayoutRequest layout;                  ///< store and packets
-  std::optional<TriangleFormat> format;  ///< of a mesh or a text scene
-  std::optional<Accuracy> accuracy;      ///< of the bounds; nothing: the one for the image's format
-  bool has_depth = false;                ///< distances are wanted too
-  std::optional<CountPair> size;         ///< of the picture whose memory is counted
+  LayoutRequest layout;                         ///< store and packets
+  std::optional<TriangleFormat> format;         ///< of a mesh or a text scene
+  std::optional<Accuracy> accuracy;             ///< of the bounds; nothing: the one for the image's format
+  bool has_depth = false;                       ///< distances are wanted too
+  std::optional<std::filesystem::path> camera;  ///< of a view whose tiles are bounded
+  Shading shading = Shading::kSimple;           ///< of these, kNone or kSimple
+  std::optional<CountPair> size;                ///< of the picture whose memory is counted
   bool json = false;
 };
 
@@ -37,6 +40,7 @@ struct InfoPlan {
   TriangleFormat format = TriangleFormat::kVertices;
   std::optional<Accuracy> accuracy;
   bool has_depth = false;
+  Shading shading = Shading::kSimple;
   CountPair size = kUsualPictureSize;
   bool json = false;
 };

@@ -4,10 +4,14 @@
 #include <gridiron/base/math.h>
 #include <gridiron/build/effects/effect_sections.h>
 #include <gridiron/frame/frame_setup.h>
+#include <gridiron/sim/sim_memory.h>
 
 #include <algorithm>
 #include <span>
 #include <utility>
+
+#include "base/failure.h"
+#include "base/words.h"
 
 namespace gridiron::tool {
 namespace {
@@ -52,6 +56,29 @@ EffectFacts effects_of(const EffectsRecord& record, std::uint32_t triangle_count
   return facts;
 }
 
+// Of a frame whose image lies where `render` places it.
+WorstOfView bound_view(const InfoPlan& plan, const std::filesystem::path& path, std::span<const std::byte> image,
+                       const SceneImageView& view, const ViewRequest& request) {
+  FrameSettings settings;
+  // A camera's file has eye and at, so that no point is asked for.
+  settings.camera = complete_view(request, static_cast<double>(plan.size.x) / plan.size.y, [](const PointVisitor&) {});
+  settings.width = plan.size.x;
+  settings.height = plan.size.y;
+  settings.tile_width = plan.layout.tile_width;
+  settings.accuracy = plan.accuracy.value_or(Accuracy::kStandard);
+  settings.shading = plan.shading;
+  settings.engine = EngineId::kTree;
+  settings.output_depth = plan.depths.output;
+  settings.fetch_depth = plan.depths.fetch;
+  constexpr MainAddress kImage{sim::SimMemory::kFirstAddress};
+  settings.color = kImage.offset_by(kLineBytes);  // across as many boundaries as may be
+  FrameRecord record;
+  const Status status = make_frame_record(settings, view, kImage, record);
+  if (status == Status::kBadFrame) usage_error("--camera: no camera can be made of it for " + path.string());
+  if (status != Status::kOk) input_error(path, words_of(status));
+  return find_worst_of_view({record, image, plan.layout.store}, *plan.scene.machine);
+}
+
 void add_structures(const SceneImageView& view, SceneFacts& facts) {
   facts.tree = view.tree;
   facts.structures = structures_of(view);
@@ -64,7 +91,8 @@ std::uint64_t EffectFacts::bytes_of(std::string_view section) const {
   return found == sections.end() ? 0 : found->bytes;
 }
 
-SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
+SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input,
+                               const std::optional<ViewRequest>& view_request) {
   SceneFacts facts;
   const StoreFacts store = *find_store_facts(plan.layout);
   const EngineId engine = store.engine;
@@ -85,9 +113,12 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
     facts.wanted_lambda = facts.grid.lambda;
     facts.image_bytes = header.image_bytes;
     facts.fits = header.image_bytes <= budget_bytes;
-    // A tile of eye rays through the tree has no bound yet.
+    // Tiles of eye rays through the tree have bounds for one camera alone.
     if (engine == EngineId::kGrid && facts.has_grid) {
       facts.worst = find_worst_tile(plan, packed->file.bytes, packed->view);
+    }
+    if (view_request) {
+      facts.worst_of_view = bound_view(plan, input.path, packed->file.bytes, packed->view, *view_request);
     }
     add_structures(packed->view, facts);
     if (packed->view.has_effects) facts.effects = effects_of(packed->view.effects, header.triangle_count);
@@ -114,6 +145,7 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input) {
       facts.image_bytes = built.header.image_bytes;
       add_structures(built, facts);
       if (engine == EngineId::kGrid) facts.worst = find_worst_tile(plan, image, built);
+      if (view_request) facts.worst_of_view = bound_view(plan, input.path, image, built, *view_request);
     }
     if (input.text) facts.roundness = input.text->roundness;
     if (effects != nullptr) {

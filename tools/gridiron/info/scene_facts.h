@@ -15,6 +15,7 @@
 #include "gridiron/scene/scene_input.h"
 #include "info_plan.h"
 #include "scene_text/scene_description.h"
+#include "worst_of_view.h"
 #include "worst_tile.h"
 
 namespace gridiron::tool {
@@ -61,10 +62,14 @@ struct SceneFacts {
   bool fits = false;                ///< in the machine's main memory
   LoopBounds bounds;                ///< with a grid
   EffectFacts effects;
-  std::optional<WorstTile> worst;  ///< where the image fits, of eye rays through the grid
+  std::optional<WorstTile> worst;            ///< where the image fits, of eye rays through the grid
+  std::optional<WorstOfView> worst_of_view;  ///< where it fits and a view is given, of eye rays through the tree
 };
 
 /// Counts the scene; builds an image that fits, to count its contents too. Errors: Failure.
-[[nodiscard]] SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input);
+///
+/// @param view  whose tiles are bounded; nothing: none are.
+[[nodiscard]] SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input,
+                                             const std::optional<ViewRequest>& view);
 
 }  // namespace gridiron::tool
