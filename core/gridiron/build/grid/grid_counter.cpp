@@ -1,5 +1,6 @@
 // Counting of scene images: see grid_builder.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/triangle_formats.h>
+#include <gridiron/build/corner_quad.h>
 #include <gridiron/build/grid/build_step.h>
 #include <gridiron/build/grid/cell_rows.h>
 #include <gridiron/build/grid/grid_builder.h>
@@ -41,7 +42,7 @@ struct KeptTriangles {
 };
 
 template <class Mesh>
-Status survey(const Mesh& mesh, bool has_grid, KeptTriangles& kept) {
+Status survey(const Mesh& mesh, KeptTriangles& kept) {
   enter_step<kIsOnLattice<Mesh> ? GridStep::kLatticeBox : GridStep::kTriangleSurvey>();
   const std::uint64_t vertex_count = mesh.vertices.size();
   for (const UVec3& t : mesh.triangles) {
@@ -60,7 +61,6 @@ Status survey(const Mesh& mesh, bool has_grid, KeptTriangles& kept) {
       kept.minimum[axis] = least[axis] < kept.minimum[axis] ? least[axis] : kept.minimum[axis];
       kept.maximum[axis] = greatest[axis] > kept.maximum[axis] ? greatest[axis] : kept.maximum[axis];
     }
-    if (!has_grid) continue;
     double e1[3];
     double e2[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -74,6 +74,24 @@ Status survey(const Mesh& mesh, bool has_grid, KeptTriangles& kept) {
       kept.areas[axis] += 0.5 * __builtin_fabs(e1[u] * e2[v] - e1[v] * e2[u]);
     }
   }
+  return Status::kOk;
+}
+
+// The same for the tree alone, without the sums.
+template <class Mesh>
+Status survey_for_tree(const Mesh& mesh, KeptTriangles& kept) {
+  const std::uint64_t vertex_count = mesh.vertices.size();
+  CornerQuad low(kFloatMax), high(-kFloatMax);
+  for (const UVec3& t : mesh.triangles) {
+    if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
+    const CornerQuads corners = CornerQuads::of(mesh, t);
+    if (corners.have_zero_area()) continue;
+    ++kept.count;
+    low = Lanes<4>::min(corners.low(), low);
+    high = Lanes<4>::max(corners.high(), high);
+  }
+  kept.minimum = vec3_of(low);
+  kept.maximum = vec3_of(high);
   return Status::kOk;
 }
 
@@ -326,7 +344,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GridRecord grid{};
   KeptTriangles kept;
   const bool has_grid = request.parameters.has_grid;
-  GRIDIRON_TRY(survey(mesh, has_grid, kept));
+  GRIDIRON_TRY(has_grid ? survey(mesh, kept) : survey_for_tree(mesh, kept));
   request.resolved_count = kept.count;
   request.kept_count = kept.count;
   if (request.parameters.format != TriangleFormat::kLattice) return count_mesh(mesh, request, kept, grid, need);
@@ -335,7 +353,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
   const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
   KeptTriangles moved_kept;
-  GRIDIRON_TRY(survey(moved, has_grid, moved_kept));
+  GRIDIRON_TRY(has_grid ? survey(moved, moved_kept) : survey_for_tree(moved, moved_kept));
   request.kept_count = moved_kept.count;
   return count_mesh(moved, request, moved_kept, grid, need);
 }

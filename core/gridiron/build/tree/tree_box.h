@@ -6,102 +6,92 @@
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/tree_records.h>
+#include <gridiron/build/corner_quad.h>
 
 #include <cstddef>
 #include <cstdint>
 
 namespace gridiron {
 
-/// A box of triangles or of a node; at first empty.
-struct TreeBox {
-  float low[3] = {kFloatMax, kFloatMax, kFloatMax};
-  float high[3] = {-kFloatMax, -kFloatMax, -kFloatMax};
+/// @returns corner 0..2 of a record.
+[[nodiscard]] GRIDIRON_INLINE CornerQuad corner_quad(const VertexTriangle& record, int corner) {
+  // Behind the last corner there is a reserved word, behind another one the next.
+  Lanes<4>::FloatVector words;
+  __builtin_memcpy(&words, reinterpret_cast<const std::byte*>(&record) + corner * std::ptrdiff_t{12}, sizeof words);
+  return CornerQuad(words);
+}
+[[nodiscard]] GRIDIRON_INLINE CornerQuads corner_quads(const VertexTriangle& record) {
+  return {corner_quad(record, 0), corner_quad(record, 1), corner_quad(record, 2)};
+}
 
-  void add(int axis, float value) {
-    low[axis] = value < low[axis] ? value : low[axis];
-    high[axis] = value > high[axis] ? value : high[axis];
+/// Four columns of x, y and z, of four quads or as quads.
+struct QuadRows {
+  CornerQuad x, y, z;
+
+  [[nodiscard]] static GRIDIRON_INLINE QuadRows of(const CornerQuad* quads) {
+    using L = Lanes<4>;
+    const CornerQuad xy01 = L::shuffle_quads<0, 1, 4, 5>(quads[0], quads[1]);
+    const CornerQuad xy23 = L::shuffle_quads<0, 1, 4, 5>(quads[2], quads[3]);
+    const CornerQuad z01 = L::shuffle_quads<2, 2, 6, 6>(quads[0], quads[1]);
+    const CornerQuad z23 = L::shuffle_quads<2, 2, 6, 6>(quads[2], quads[3]);
+    return {L::shuffle_quads<0, 2, 4, 6>(xy01, xy23), L::shuffle_quads<1, 3, 5, 7>(xy01, xy23),
+            L::shuffle_quads<0, 2, 4, 6>(z01, z23)};
   }
-  void add(const Vec3& p) {
-    for (int axis = 0; axis < 3; ++axis) add(axis, p[axis]);
-  }
-  void add(const TreeBox& box) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = box.low[axis] < low[axis] ? box.low[axis] : low[axis];
-      high[axis] = box.high[axis] > high[axis] ? box.high[axis] : high[axis];
-    }
-  }
-  /// @param margin  tree_margin() of all triangles.
-  void grow(float margin) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = grown_low(low[axis], margin);
-      high[axis] = grown_high(high[axis], margin);
-    }
-  }
-  /// Twice the centre, rounded; the least and the greatest that boxes inside can have.
-  [[nodiscard]] Vec3 middle() const { return {low[0] + high[0], low[1] + high[1], low[2] + high[2]}; }
-  [[nodiscard]] Vec3 low_middle() const { return {low[0] + low[0], low[1] + low[1], low[2] + low[2]}; }
-  [[nodiscard]] Vec3 high_middle() const { return {high[0] + high[0], high[1] + high[1], high[2] + high[2]}; }
-  [[nodiscard]] float half_surface() const {
-    float size[3];
-    for (int axis = 0; axis < 3; ++axis) size[axis] = high[axis] - low[axis];
-    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+  /// Lane by lane.
+  template <class Choose>
+  [[nodiscard]] GRIDIRON_INLINE CornerQuad reduced(Choose&& choose) const {
+    using L = Lanes<4>;
+    // x and y at once: of two columns each, then of one; then z.
+    const CornerQuad low_xy = L::shuffle_quads<0, 1, 4, 5>(x, y), high_xy = L::shuffle_quads<2, 3, 6, 7>(x, y);
+    const CornerQuad xy = choose(low_xy, high_xy);                                   // x x y y
+    const CornerQuad zz = choose(z, L::shuffle_quads<2, 3, 0, 1>(z));                // z z
+    const CornerQuad even = L::shuffle_quads<0, 2, 4, 4>(xy, zz), odd = L::shuffle_quads<1, 3, 5, 5>(xy, zz);
+    return choose(even, odd);
   }
 };
 
-/// x, y and z of a corner, and a number without meaning.
-using CornerQuad = Lanes<4>::Float;
-[[nodiscard]] inline CornerQuad corner_quad(const VertexTriangle& record, int corner) {
-  // Behind the last corner there is a reserved word, behind another one the next.
-  float words[4];
-  __builtin_memcpy(words, reinterpret_cast<const std::byte*>(&record) + corner * std::ptrdiff_t{12}, sizeof words);
-  return CornerQuad::load(words);
-}
-
-/// The box of triangles, in lanes; zeros may have another sign than TreeBox gives them, which is lost when it grows.
+/// The box of triangles or of a node, in lanes; at first empty. Zeros may have another sign than in the corners, which
+/// is lost when the box grows.
 struct QuadBox {
   CornerQuad low{kFloatMax}, high{-kFloatMax};
 
-  void add(CornerQuad a, CornerQuad b, CornerQuad c) {
-    low = Lanes<4>::min(Lanes<4>::min(a, b), Lanes<4>::min(c, low));
-    high = Lanes<4>::max(Lanes<4>::max(a, b), Lanes<4>::max(c, high));
+  GRIDIRON_INLINE void add(const CornerQuads& corners) {
+    low = Lanes<4>::min(corners.low(), low);
+    high = Lanes<4>::max(corners.high(), high);
   }
-  /// @returns the box, grown.
-  [[nodiscard]] TreeBox grown(float margin) const {
-    TreeBox box;
-    for (int axis = 0; axis < 3; ++axis) {
-      box.low[axis] = low.v[axis];
-      box.high[axis] = high.v[axis];
-    }
-    box.grow(margin);
-    return box;
+  GRIDIRON_INLINE void add(CornerQuad corner) {
+    low = Lanes<4>::min(corner, low);
+    high = Lanes<4>::max(corner, high);
+  }
+  /// @param margin  tree_margin() of all triangles.
+  [[nodiscard]] GRIDIRON_INLINE QuadBox grown(float margin) const {
+    const auto growth_of = [margin](CornerQuad place) GRIDIRON_INLINE_LAMBDA {
+      return Lanes<4>::abs(place) * CornerQuad(kTreeGrowth) + CornerQuad(margin);
+    };
+    return {low - growth_of(low), high + growth_of(high)};
+  }
+  /// Twice the centre, rounded.
+  [[nodiscard]] GRIDIRON_INLINE CornerQuad middle() const { return low + high; }
+  [[nodiscard]] GRIDIRON_INLINE float half_surface() const {
+    const CornerQuad size = high - low;
+    const CornerQuad sides = size * turned(size);
+    return sides.v[0] + sides.v[1] + sides.v[2];
+  }
+
+  /// The box of a node: that of its children's boxes. Those that are not there change nothing.
+  [[nodiscard]] static GRIDIRON_INLINE QuadBox of_node(const TreeNode& node) {
+    using Quad = CornerQuad;
+    const auto least = [](Quad a, Quad b) GRIDIRON_INLINE_LAMBDA { return Lanes<4>::min(a, b); };
+    const auto greatest = [](Quad a, Quad b) GRIDIRON_INLINE_LAMBDA { return Lanes<4>::max(a, b); };
+    const auto column = [](const float* sides, auto&& choose) GRIDIRON_INLINE_LAMBDA {
+      return choose(choose(Quad::load(sides), Quad::load(sides + 4)), choose(Quad::load(sides + 8), Quad::load(sides + 12)));
+    };
+    const QuadRows lows = {column(node.low[0], least), column(node.low[1], least), column(node.low[2], least)};
+    const QuadRows highs = {column(node.high[0], greatest), column(node.high[1], greatest),
+                            column(node.high[2], greatest)};
+    return {lows.reduced(least), highs.reduced(greatest)};
   }
 };
-
-/// @returns the box of a triangle.
-[[nodiscard]] inline TreeBox box_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-  TreeBox box;
-  box.add(a);
-  box.add(b);
-  box.add(c);
-  return box;
-}
-
-/// @returns the box of a node: that of its children's boxes. Those that are not there change nothing.
-[[nodiscard]] inline TreeBox box_of_node(const TreeNode& node) {
-  using Quad = Lanes<4>::Float;
-  TreeBox box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto low_at = [&node, axis](int i) { return Quad::load(node.low[axis] + 4 * i); };
-    const auto high_at = [&node, axis](int i) { return Quad::load(node.high[axis] + 4 * i); };
-    const Quad low = Lanes<4>::min(Lanes<4>::min(low_at(0), low_at(1)), Lanes<4>::min(low_at(2), low_at(3)));
-    const Quad high = Lanes<4>::max(Lanes<4>::max(high_at(0), high_at(1)), Lanes<4>::max(high_at(2), high_at(3)));
-    for (int i = 0; i < 4; ++i) {
-      box.low[axis] = low.v[i] < box.low[axis] ? low.v[i] : box.low[axis];
-      box.high[axis] = high.v[i] > box.high[axis] ? high.v[i] : box.high[axis];
-    }
-  }
-  return box;
-}
 
 /// @returns the margin by which boxes of triangles within these bounds are grown.
 [[nodiscard]] inline float tree_margin_of(const float minimum[3], const float maximum[3]) {

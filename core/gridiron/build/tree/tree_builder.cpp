@@ -2,7 +2,6 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
-#include <gridiron/build/triangle_records.h>
 
 #include <bit>
 #include <cstddef>
@@ -25,10 +24,9 @@ struct Key {
 };
 
 // Twice the area; where floats overflow or underflow any number, as it decides an order alone.
-float area_of(CornerQuad a, CornerQuad b, CornerQuad c) {
-  const CornerQuad e = b - a, f = c - a;
-  const auto turn = [](CornerQuad q) { return Lanes<4>::shuffle_quads<1, 2, 0, 3>(q); };
-  const CornerQuad normal = e * turn(f) - turn(e) * f;  // z, x, y
+float area_of(const CornerQuads& corners) {
+  const CornerQuad e = corners.b - corners.a, f = corners.c - corners.a;
+  const CornerQuad normal = e * turned(f) - turned(e) * f;  // z, x, y
   const CornerQuad squares = normal * normal;
   return __builtin_sqrtf(squares.v[1] + squares.v[2] + squares.v[0]);
 }
@@ -36,39 +34,39 @@ float area_of(CornerQuad a, CornerQuad b, CornerQuad c) {
 // The lattice of a Z curve: kPlaces along each axis of a range of middles.
 class Curve {
  public:
-  Curve(const Vec3& low, const Vec3& high) {
+  explicit Curve(const QuadBox& middles) : low_(middles.low) {
+    const CornerQuad extents = middles.high - middles.low;
+    float scales[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     for (int axis = 0; axis < 3; ++axis) {
-      low_[axis] = low[axis];
-      const float extent = high[axis] - low[axis];
+      const float extent = extents.v[axis];
       // The last middle falls into the last place; a smaller extent would have a scale that is no number.
       if (extent > 0x1p-100f) {
-        scale_[axis] = 1023.9375f / extent;
+        scales[axis] = 1023.9375f / extent;
         is_flat_ = false;
       }
     }
+    scale_ = CornerQuad::load(scales);
   }
   // All triangles are at one place.
   [[nodiscard]] bool is_flat() const { return is_flat_; }
 
-  [[nodiscard]] std::uint32_t code_of(const Vec3& middle) const {
-    std::uint32_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float place = (middle[axis] - low_[axis]) * scale_[axis];
-      code |= spread(static_cast<std::uint32_t>(static_cast<std::int32_t>(place))) << axis;
-    }
-    return code;
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t code_of(CornerQuad middle) const {
+    const Lanes<4>::Int code = spread(Lanes<4>::truncate((middle - low_) * scale_));
+    const auto word = [&code](int lane) GRIDIRON_INLINE_LAMBDA { return static_cast<std::uint32_t>(code[lane]); };
+    return word(0) | word(1) << 1 | word(2) << 2;
   }
 
  private:
   // Two zeros behind each of ten bits.
-  [[nodiscard]] static std::uint32_t spread(std::uint32_t bits) {
-    bits = (bits | bits << 16) & 0x030000FFu;
-    bits = (bits | bits << 8) & 0x0300F00Fu;
-    bits = (bits | bits << 4) & 0x030C30C3u;
-    return (bits | bits << 2) & 0x09249249u;
+  [[nodiscard]] static GRIDIRON_INLINE Lanes<4>::Int spread(Lanes<4>::Int bits) {
+    using Int = Lanes<4>::Int;
+    bits = (bits | bits << 16) & Int::splat(0x030000FFu);
+    bits = (bits | bits << 8) & Int::splat(0x0300F00Fu);
+    bits = (bits | bits << 4) & Int::splat(0x030C30C3u);
+    return (bits | bits << 2) & Int::splat(0x09249249u);
   }
 
-  float low_[3], scale_[3] = {0.0f, 0.0f, 0.0f};
+  CornerQuad low_, scale_;
   bool is_flat_ = true;
 };
 
@@ -78,32 +76,42 @@ class Curve {
   return static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(static_cast<double>(bits) + 0.5) >> 52) - 1022;
 }
 
-// Sorts keys by their codes, equal ones in the order they have. `from` is changed too.
-void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histograms) {
-  for (std::uint32_t i = 0; i < kDigits * kPlaces; ++i) histograms[i] = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
+// How many keys have each value of each digit.
+class Histograms {
+ public:
+  explicit Histograms(std::uint32_t* counts) : counts_(counts) {
+    for (std::uint32_t i = 0; i < kDigits * kPlaces; ++i) counts_[i] = 0;
+  }
+  GRIDIRON_INLINE void add(std::uint32_t code) {
+    for (std::uint32_t digit = 0; digit < kDigits; ++digit) ++counts_[digit * kPlaces + place_of(code, digit)];
+  }
+  // Sorts the keys that were added by their codes, equal ones in the order they have. `from` is changed too.
+  void sort(Key* from, Key* to, std::uint32_t count) {
     for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
-      ++histograms[digit * kPlaces + (from[i].code >> 10 * digit) % kPlaces];
+      std::uint32_t* const places = counts_ + digit * kPlaces;
+      std::uint32_t sum = 0;
+      for (std::uint32_t i = 0; i < kPlaces; ++i) {
+        const std::uint32_t here = places[i];
+        places[i] = sum;
+        sum += here;
+      }
+      for (std::uint32_t i = 0; i < count; ++i) to[places[place_of(from[i].code, digit)]++] = from[i];
+      Key* const sorted = to;
+      to = from;
+      from = sorted;
     }
   }
-  for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
-    std::uint32_t* const places = histograms + digit * kPlaces;
-    std::uint32_t sum = 0;
-    for (std::uint32_t i = 0; i < kPlaces; ++i) {
-      const std::uint32_t here = places[i];
-      places[i] = sum;
-      sum += here;
-    }
-    for (std::uint32_t i = 0; i < count; ++i) to[places[(from[i].code >> 10 * digit) % kPlaces]++] = from[i];
-    Key* const sorted = to;
-    to = from;
-    from = sorted;
-  }
-}
 
-// Records ahead of the one that is written whose indices, and whose corners, the caches are asked for: neighbours in
-// the tree may lie far apart in the mesh.
-constexpr std::uint32_t kIndicesAhead = 32, kCornersAhead = 16;
+ private:
+  [[nodiscard]] static GRIDIRON_INLINE std::uint32_t place_of(std::uint32_t code, std::uint32_t digit) {
+    return (code >> 10 * digit) % kPlaces;
+  }
+
+  std::uint32_t* counts_;
+};
+
+// Triangles ahead of the one that is taken whose corners the caches are asked for.
+constexpr std::size_t kTrianglesAhead = 16;
 // Nodes ahead of the one that is split whose keys are asked for, at most so many.
 constexpr std::uint32_t kNodesAhead = 2, kFewKeys = 256;
 
@@ -131,19 +139,19 @@ struct VertexForm {
   using Record = VertexTriangle;
 
   explicit VertexForm(const MeshView&) {}
-  static void write(const MeshView& mesh, std::uint32_t id, Record& record) {
-    const UVec3& t = mesh.triangles[id];
-    record = {};
-    for (int corner = 0; corner < 3; ++corner) {
-      const Vec3& p = mesh.vertices[t[corner]];
-      for (int axis = 0; axis < 3; ++axis) record.v[corner][axis] = p[axis];
-    }
-    record.triangle_id = id;
+  // Writes a triangle's record. @returns its corners.
+  static GRIDIRON_INLINE CornerQuads write(const MeshView& mesh, std::uint32_t id, Record& record) {
+    const CornerQuads corners = CornerQuads::of(mesh, mesh.triangles[id]);
+    // Each store overwrites the last lane of the one before; the last lane of a corner is 0.
+    auto* const bytes = reinterpret_cast<std::byte*>(&record);
+    const std::uint64_t end = std::uint64_t{id} << 32;
+    static_assert(offsetof(Record, reserved) == 36 && offsetof(Record, triangle_id) == 44);
+    __builtin_memcpy(bytes, &corners.a, sizeof corners.a);
+    __builtin_memcpy(bytes + 12, &corners.b, sizeof corners.b);
+    __builtin_memcpy(bytes + 24, &corners.c, sizeof corners.c);
+    __builtin_memcpy(bytes + 40, &end, sizeof end);
+    return corners;
   }
-  [[nodiscard]] static Vec3 corner(const Record& record, int i) {
-    return {record.v[i][0], record.v[i][1], record.v[i][2]};
-  }
-  [[nodiscard]] static CornerQuad quad(const Record& record, int i) { return corner_quad(record, i); }
 };
 
 struct LatticeForm {
@@ -151,27 +159,22 @@ struct LatticeForm {
   Lattice lattice;
 
   explicit LatticeForm(const LatticeMesh& mesh) : lattice(mesh.vertices.lattice) {}
-  void write(const LatticeMesh& mesh, std::uint32_t id, Record& record) const {
+  CornerQuads write(const LatticeMesh& mesh, std::uint32_t id, Record& record) const {
     const UVec3& t = mesh.triangles[id];
     record = {};
+    CornerQuad corners[3];
     for (int corner = 0; corner < 3; ++corner) {
       const LatticePoint p = lattice_point(lattice, mesh.vertices.vertices[t[corner]]);
-      for (int axis = 0; axis < 3; ++axis) record.v[corner][axis] = p.place[axis];
+      Vec3 point;
+      for (int axis = 0; axis < 3; ++axis) {
+        record.v[corner][axis] = p.place[axis];
+        // Exact: see Lattice.
+        point[axis] = lattice.origin[axis] + lattice.step * static_cast<float>(std::int32_t{p.place[axis]});
+      }
+      corners[corner] = quad_of(point);
     }
     record.triangle_id = id;
-  }
-  // Exact: see Lattice.
-  [[nodiscard]] Vec3 corner(const Record& record, int i) const {
-    Vec3 p;
-    for (int axis = 0; axis < 3; ++axis) {
-      p[axis] = lattice.origin[axis] + lattice.step * static_cast<float>(std::int32_t{record.v[i][axis]});
-    }
-    return p;
-  }
-  [[nodiscard]] CornerQuad quad(const Record& record, int i) const {
-    const Vec3 p = corner(record, i);
-    const float words[4] = {p.x, p.y, p.z, 0.0f};
-    return CornerQuad::load(words);
+    return {corners[0], corners[1], corners[2]};
   }
 };
 
@@ -189,20 +192,18 @@ class TreeBuilder {
         nodes_(nodes),
         keys_(reinterpret_cast<Key*>(scratch.data())),
         spare_(keys_ + mesh.triangles.size()),
-        histograms_(reinterpret_cast<std::uint32_t*>(spare_ + mesh.triangles.size())),
+        counts_(reinterpret_cast<std::uint32_t*>(spare_ + mesh.triangles.size())),
         size_(size) {}
 
   [[nodiscard]] Status build() {
     size_ = {};
-    TreeBox vertices;
+    QuadBox vertices;
     GRIDIRON_TRY(bound_vertices(vertices));
-    GRIDIRON_TRY(take_triangles(Curve(vertices.low_middle(), vertices.high_middle())));
+    GRIDIRON_TRY(take_triangles(vertices));
     const std::uint32_t count = size_.triangle_count;
     if (count > records_.size()) return Status::kMemoryTooSmall;
-    sort_keys(spare_, keys_, count, histograms_);
-    write_records(count);
     GRIDIRON_TRY(split_all(count));
-    bound_all();
+    write_all();
     return Status::kOk;
   }
 
@@ -222,56 +223,48 @@ class TreeBuilder {
 
   // --- Triangles --------------------------------------------------------------------------------------------------
 
-  [[nodiscard]] Status bound_vertices(TreeBox& box) const {
+  [[nodiscard]] Status bound_vertices(QuadBox& box) const {
     const std::size_t vertex_count = mesh_.vertices.size();
-    std::uint32_t outside = 0;
+    const CornerQuad limit(kCoordinateLimit);
+    std::uint32_t inside = 7u;
     for (std::size_t i = 0; i < vertex_count; ++i) {
-      const Vec3 p = mesh_.vertices[i];
-      for (int axis = 0; axis < 3; ++axis) outside |= __builtin_fabsf(p[axis]) <= kCoordinateLimit ? 0u : 1u;
+      const CornerQuad p = quad_of(mesh_.vertices[i]);
+      inside &= (Lanes<4>::abs(p) <= limit).bits();
       box.add(p);
     }
-    return outside == 0 ? Status::kOk : Status::kBadVertex;
+    return inside == 7u ? Status::kOk : Status::kBadVertex;
   }
 
-  // Lists the triangles that have an area, with their codes, and bounds them.
-  [[nodiscard]] Status take_triangles(const Curve& curve) {
-    const std::size_t vertex_count = mesh_.vertices.size();
-    TreeBox bounds;
-    std::uint32_t id = 0, count = 0;
-    for (const UVec3& t : mesh_.triangles) {
+  // Sorts the triangles that have an area by their codes, and bounds them.
+  [[nodiscard]] Status take_triangles(const QuadBox& vertices) {
+    // The least and the greatest middle that a triangle can have.
+    const Curve curve({vertices.low + vertices.low, vertices.high + vertices.high});
+    const std::size_t vertex_count = mesh_.vertices.size(), triangle_count = mesh_.triangles.size();
+    Histograms histograms(counts_);
+    QuadBox bounds;
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < triangle_count; ++i) {
+      if (i + kTrianglesAhead < triangle_count) ask_for_corners(mesh_, mesh_.triangles[i + kTrianglesAhead]);
+      const UVec3& t = mesh_.triangles[i];
       if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
-      const Vec3& a = mesh_.vertices[t.x];
-      const Vec3& b = mesh_.vertices[t.y];
-      const Vec3& c = mesh_.vertices[t.z];
-      const std::uint32_t here = id++;
-      if (has_zero_area(a, b, c)) continue;
-      const TreeBox box = box_of(a, b, c);
-      bounds.add(box);
-      spare_[count++] = {curve.code_of(box.middle()), here};
+      const CornerQuads corners = CornerQuads::of(mesh_, t);
+      if (corners.have_zero_area()) continue;
+      const QuadBox box{corners.low(), corners.high()};
+      bounds.low = Lanes<4>::min(box.low, bounds.low);
+      bounds.high = Lanes<4>::max(box.high, bounds.high);
+      const std::uint32_t code = curve.code_of(box.middle());
+      histograms.add(code);
+      spare_[count++] = {code, static_cast<std::uint32_t>(i)};
     }
     if (count == 0) return Status::kNoTriangles;
     size_.triangle_count = count;
-    size_.dropped_triangle_count = id - count;
+    size_.dropped_triangle_count = static_cast<std::uint32_t>(triangle_count) - count;
     for (int axis = 0; axis < 3; ++axis) {
-      size_.low[axis] = bounds.low[axis];
-      size_.high[axis] = bounds.high[axis];
+      size_.low[axis] = bounds.low.v[axis];
+      size_.high[axis] = bounds.high.v[axis];
     }
+    histograms.sort(spare_, keys_, count);
     return Status::kOk;
-  }
-
-  // In the order of the keys.
-  void write_records(std::uint32_t count) {
-    const std::uint32_t last = count - 1;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      __builtin_prefetch(&mesh_.triangles[keys_[last - i > kIndicesAhead ? i + kIndicesAhead : last].id]);
-      ask_for_corners(mesh_, mesh_.triangles[keys_[last - i > kCornersAhead ? i + kCornersAhead : last].id]);
-      form_.write(mesh_, keys_[i].id, records_[i]);
-    }
-  }
-
-  [[nodiscard]] TreeBox box_of_record(std::uint32_t i) const {
-    const Record& record = records_[i];
-    return box_of(form_.corner(record, 0), form_.corner(record, 1), form_.corner(record, 2));
   }
 
   // --- Nodes ------------------------------------------------------------------------------------------------------
@@ -412,90 +405,109 @@ class TreeBuilder {
   // they are few or all in one place.
   void code_again(std::uint32_t begin, std::uint32_t end) {
     const std::uint32_t count = end - begin;
-    TreeBox middles;
-    if (count > kFewTriangles) {
-      for (std::uint32_t i = begin; i < end; ++i) middles.add(box_of_record(i).middle());
-    }
-    const Curve curve({middles.low[0], middles.low[1], middles.low[2]},
-                      {middles.high[0], middles.high[1], middles.high[2]});
     Key* const keys = keys_ + begin;
+    const auto middle_of = [this](const Key& key) {
+      const CornerQuads corners = CornerQuads::of(mesh_, mesh_.triangles[key.id]);
+      return corners.low() + corners.high();
+    };
+    QuadBox middles;
+    if (count > kFewTriangles) {
+      for (std::uint32_t i = 0; i < count; ++i) middles.add(middle_of(keys[i]));
+    }
+    const Curve curve(middles);
     if (count <= kFewTriangles || curve.is_flat()) {
       for (std::uint32_t i = 0; i < count; ++i) keys[i].code = i;
       return;
     }
+    Histograms histograms(counts_);
     Key* const unsorted = spare_ + begin;
-    for (std::uint32_t i = 0; i < count; ++i) unsorted[i] = {curve.code_of(box_of_record(begin + i).middle()), i};
-    sort_keys(unsorted, keys, count, histograms_);
-    // Record i comes from keys[i].id: cycle by cycle. One that is in its place is its own.
-    Record* const records = &records_[begin];
-    for (std::uint32_t start = 0; start < count; ++start) {
-      if (keys[start].id == start) continue;
-      const Record first = records[start];
-      std::uint32_t place = start;
-      while (keys[place].id != start) {
-        const std::uint32_t from = keys[place].id;
-        records[place] = records[from];
-        keys[place].id = place;
-        place = from;
-      }
-      records[place] = first;
-      keys[place].id = place;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      unsorted[i] = {curve.code_of(middle_of(keys[i])), keys[i].id};
+      histograms.add(unsorted[i].code);
     }
+    histograms.sort(unsorted, keys, count);
   }
 
-  // --- Boxes ------------------------------------------------------------------------------------------------------
+  // --- Records and boxes ------------------------------------------------------------------------------------------
 
   // From the last node to the first, so that children come before their parents. Codes are not needed any more.
-  void bound_all() {
+  void write_all() {
     margin_ = tree_margin_of(size_.low, size_.high);
     auto* const areas = reinterpret_cast<float*>(spare_);  // by node; there are no more nodes than triangles
-    for (std::uint32_t i = size_.node_count; i-- > 0;) {
-      if (i > 0) {
-        for (const TreeChild child : nodes_[i - 1].children) {
-          if (child.is_leaf()) ask_for(&records_[child.first()], child.count());
-        }
-      }
-      areas[i] = bound(nodes_[i], areas);
+    for (std::uint32_t i = size_.node_count; i-- > 0;) areas[i] = write(i, areas);
+  }
+
+  // Asks the caches for what a leaf of a node that comes later needs: its keys, then its triangles, then their corners.
+  void ask_for_keys(std::uint32_t node, std::uint32_t child_number) const {
+    const TreeChild child = nodes_[node].children[child_number];
+    if (child.is_leaf()) ask_for(&keys_[child.first()], child.count());
+  }
+  void ask_for_triangles(std::uint32_t node, std::uint32_t child_number) const {
+    const TreeChild child = nodes_[node].children[child_number];
+    if (!child.is_leaf()) return;
+    for (std::uint32_t i = 0; i < child.count(); ++i) __builtin_prefetch(&mesh_.triangles[keys_[child.first() + i].id]);
+  }
+  void ask_for_leaf_corners(std::uint32_t node, std::uint32_t child_number) const {
+    const TreeChild child = nodes_[node].children[child_number];
+    if (!child.is_leaf()) return;
+    for (std::uint32_t i = 0; i < child.count(); ++i) {
+      ask_for_corners(mesh_, mesh_.triangles[keys_[child.first() + i].id]);
     }
   }
 
+  // Writes the records of a node's leaves, and the boxes and the order of its children.
   // @returns the area of the node's triangles.
-  [[nodiscard]] float bound(TreeNode& node, const float* areas) const {
+  [[nodiscard]] float write(std::uint32_t number, const float* areas) const {
+    TreeNode& node = nodes_[number];
     float total = 0.0f, densities[kTreeWidth];
-    const float margin = margin_;
+    QuadBox boxes[kTreeWidth];
     for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
-      TreeBox box;
-      if (i < node.child_count) {
-        const TreeChild child = node.children[i];
-        float area = 0.0f;
-        if (child.is_leaf()) {
-          box = bound_leaf(child, margin, area);
-        } else {
-          box = box_of_node(nodes_[child.node_index()]);
-          area = areas[child.node_index()];
-        }
-        total += area;
-        densities[i] = area * (child.is_leaf() ? kLeafDensity : 1.0f) / box.half_surface();
+      if (number >= 3) {
+        ask_for_keys(number - 3, i);
+        ask_for_triangles(number - 2, i);
+        ask_for_leaf_corners(number - 1, i);
       }
-      for (int axis = 0; axis < 3; ++axis) {
-        node.low[axis][i] = box.low[axis];
-        node.high[axis][i] = box.high[axis];
+      if (i >= node.child_count) continue;
+      const TreeChild child = node.children[i];
+      float area = 0.0f;
+      if (child.is_leaf()) {
+        boxes[i] = write_leaf(child, area);
+      } else {
+        boxes[i] = QuadBox::of_node(nodes_[child.node_index()]);
+        area = areas[child.node_index()];
       }
+      total += area;
+      densities[i] = area * (child.is_leaf() ? kLeafDensity : 1.0f) / boxes[i].half_surface();
+    }
+    for (std::uint32_t i = 0; i < kTreeWidth; i += 4) {
+      CornerQuad lows[4], highs[4];
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        lows[k] = boxes[i + k].low;
+        highs[k] = boxes[i + k].high;
+      }
+      const QuadRows low = QuadRows::of(lows), high = QuadRows::of(highs);
+      low.x.store(node.low[0] + i);
+      low.y.store(node.low[1] + i);
+      low.z.store(node.low[2] + i);
+      high.x.store(node.high[0] + i);
+      high.y.store(node.high[1] + i);
+      high.z.store(node.high[2] + i);
     }
     node.order = order_of(densities, node.child_count);
     return total;
   }
 
-  // The box of a leaf, and the area of its triangles.
-  [[nodiscard]] TreeBox bound_leaf(TreeChild leaf, float margin, float& area) const {
+  // Writes a leaf's records. @returns its box, and the area of its triangles.
+  [[nodiscard]] QuadBox write_leaf(TreeChild leaf, float& area) const {
     QuadBox box;
+    float sum = 0.0f;
     for (std::uint32_t k = leaf.first(); k < leaf.first() + leaf.count(); ++k) {
-      const Record& record = records_[k];
-      const CornerQuad a = form_.quad(record, 0), b = form_.quad(record, 1), c = form_.quad(record, 2);
-      box.add(a, b, c);
-      area += area_of(a, b, c);
+      const CornerQuads corners = form_.write(mesh_, keys_[k].id, records_[k]);
+      box.add(corners);
+      sum += area_of(corners);
     }
-    return box.grown(margin);
+    area = sum;
+    return box.grown(margin_);
   }
 
   // The densest first; of equal ones the first.
@@ -522,7 +534,7 @@ class TreeBuilder {
   std::span<TreeNode> nodes_;
   Key* keys_;
   Key* spare_;
-  std::uint32_t* histograms_;
+  std::uint32_t* counts_;
   TreeSize& size_;
   float margin_ = 0.0f;
 };
