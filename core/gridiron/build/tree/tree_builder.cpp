@@ -76,39 +76,28 @@ class Curve {
   return static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(static_cast<double>(bits) + 0.5) >> 52) - 1022;
 }
 
-// How many keys have each value of each digit.
-class Histograms {
- public:
-  explicit Histograms(std::uint32_t* counts) : counts_(counts) {
-    for (std::uint32_t i = 0; i < kDigits * kPlaces; ++i) counts_[i] = 0;
-  }
-  GRIDIRON_INLINE void add(std::uint32_t code) {
-    for (std::uint32_t digit = 0; digit < kDigits; ++digit) ++counts_[digit * kPlaces + place_of(code, digit)];
-  }
-  // Sorts the keys that were added by their codes, equal ones in the order they have. `from` is changed too.
-  void sort(Key* from, Key* to, std::uint32_t count) {
+// Sorts keys by their codes, equal ones in the order they have. `from` is changed too.
+void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histograms) {
+  for (std::uint32_t i = 0; i < kDigits * kPlaces; ++i) histograms[i] = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
     for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
-      std::uint32_t* const places = counts_ + digit * kPlaces;
-      std::uint32_t sum = 0;
-      for (std::uint32_t i = 0; i < kPlaces; ++i) {
-        const std::uint32_t here = places[i];
-        places[i] = sum;
-        sum += here;
-      }
-      for (std::uint32_t i = 0; i < count; ++i) to[places[place_of(from[i].code, digit)]++] = from[i];
-      Key* const sorted = to;
-      to = from;
-      from = sorted;
+      ++histograms[digit * kPlaces + (from[i].code >> 10 * digit) % kPlaces];
     }
   }
-
- private:
-  [[nodiscard]] static GRIDIRON_INLINE std::uint32_t place_of(std::uint32_t code, std::uint32_t digit) {
-    return (code >> 10 * digit) % kPlaces;
+  for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
+    std::uint32_t* const places = histograms + digit * kPlaces;
+    std::uint32_t sum = 0;
+    for (std::uint32_t i = 0; i < kPlaces; ++i) {
+      const std::uint32_t here = places[i];
+      places[i] = sum;
+      sum += here;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) to[places[(from[i].code >> 10 * digit) % kPlaces]++] = from[i];
+    Key* const sorted = to;
+    to = from;
+    from = sorted;
   }
-
-  std::uint32_t* counts_;
-};
+}
 
 // Triangles ahead of the one that is taken whose corners the caches are asked for.
 constexpr std::size_t kTrianglesAhead = 16;
@@ -240,7 +229,6 @@ class TreeBuilder {
     // The least and the greatest middle that a triangle can have.
     const Curve curve({vertices.low + vertices.low, vertices.high + vertices.high});
     const std::size_t vertex_count = mesh_.vertices.size(), triangle_count = mesh_.triangles.size();
-    Histograms histograms(counts_);
     QuadBox bounds;
     std::uint32_t count = 0;
     for (std::size_t i = 0; i < triangle_count; ++i) {
@@ -252,9 +240,7 @@ class TreeBuilder {
       const QuadBox box{corners.low(), corners.high()};
       bounds.low = Lanes<4>::min(box.low, bounds.low);
       bounds.high = Lanes<4>::max(box.high, bounds.high);
-      const std::uint32_t code = curve.code_of(box.middle());
-      histograms.add(code);
-      spare_[count++] = {code, static_cast<std::uint32_t>(i)};
+      spare_[count++] = {curve.code_of(box.middle()), static_cast<std::uint32_t>(i)};
     }
     if (count == 0) return Status::kNoTriangles;
     size_.triangle_count = count;
@@ -263,7 +249,7 @@ class TreeBuilder {
       size_.low[axis] = bounds.low.v[axis];
       size_.high[axis] = bounds.high.v[axis];
     }
-    histograms.sort(spare_, keys_, count);
+    sort_keys(spare_, keys_, count, counts_);
     return Status::kOk;
   }
 
@@ -419,13 +405,9 @@ class TreeBuilder {
       for (std::uint32_t i = 0; i < count; ++i) keys[i].code = i;
       return;
     }
-    Histograms histograms(counts_);
     Key* const unsorted = spare_ + begin;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      unsorted[i] = {curve.code_of(middle_of(keys[i])), keys[i].id};
-      histograms.add(unsorted[i].code);
-    }
-    histograms.sort(unsorted, keys, count);
+    for (std::uint32_t i = 0; i < count; ++i) unsorted[i] = {curve.code_of(middle_of(keys[i])), keys[i].id};
+    sort_keys(unsorted, keys, count, counts_);
   }
 
   // --- Records and boxes ------------------------------------------------------------------------------------------
@@ -453,6 +435,7 @@ class TreeBuilder {
     for (std::uint32_t i = 0; i < child.count(); ++i) {
       ask_for_corners(mesh_, mesh_.triangles[keys_[child.first() + i].id]);
     }
+    ask_for(&records_[child.first()], child.count());
   }
 
   // Writes the records of a node's leaves, and the boxes and the order of its children.
