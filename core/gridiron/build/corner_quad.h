@@ -49,17 +49,22 @@ struct CornerQuads {
   [[nodiscard]] GRIDIRON_INLINE CornerQuad low() const { return Lanes<4>::min(Lanes<4>::min(a, b), c); }
   [[nodiscard]] GRIDIRON_INLINE CornerQuad high() const { return Lanes<4>::max(Lanes<4>::max(a, b), c); }
 
-  /// The function of triangle_records.h. Floats decide nearly always, else doubles and integers.
-  ///
-  /// Sure, with u = 2^-24: an edge component has an error of u of itself, a product of two 3 u and 2^-150, the
-  /// difference u more, together less than 3.01 u (|p| + |q|) + u |p - q| + 2^-148. Where numbers overflow the bound is
-  /// infinite or none, and nothing is greater.
-  [[nodiscard]] GRIDIRON_INLINE bool have_zero_area() const {
+  /// False where floats do not decide. Sure, with u = 2^-24 and p - q a component of the normal: an edge component has an
+  /// error of u of itself, a product of two 3 u and 2^-150, the difference u more, together less than 3.01 u (|p| + |q|)
+  /// + u |p - q| + 2^-148. As |q| <= |p| + |p - q|, this is less than 7 u |p| + 5 u |p - q| + 2^-148. Where numbers
+  /// overflow the bound is infinite or none, and nothing is greater.
+  [[nodiscard]] GRIDIRON_INLINE bool surely_have_area() const {
+    using L = Lanes<4>;
+    constexpr L::FloatVector kShare = {0x1p-20f, 0x1p-20f, 0x1p-20f, 0x1p-20f};
+    constexpr L::FloatVector kLeast = {0x1p-140f, 0x1p-140f, 0x1p-140f, 0x1p-140f};
     const CornerQuad e = b - a, f = c - a;
     const CornerQuad p = e * turned(f), q = turned(e) * f;
-    const CornerQuad error = (Lanes<4>::abs(p) + Lanes<4>::abs(q)) * CornerQuad(0x1p-20f) + CornerQuad(0x1p-140f);
-    if (((Lanes<4>::abs(p - q) > error).bits() & 7u) != 0) return false;
-    return has_zero_area(vec3_of(a), vec3_of(b), vec3_of(c));
+    const CornerQuad error = L::abs(p) * CornerQuad(kShare) + CornerQuad(kLeast);
+    return ((L::abs(p - q) > error).bits() & 7u) != 0;
+  }
+  /// The function of triangle_records.h.
+  [[nodiscard]] GRIDIRON_INLINE bool have_zero_area() const {
+    return !surely_have_area() && has_zero_area(vec3_of(a), vec3_of(b), vec3_of(c));
   }
 };
 

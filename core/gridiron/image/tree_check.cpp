@@ -36,31 +36,21 @@ class TreeTriangles {
         high_(quad_of(bounds_of(view.tree.bounds_maximum))),
         is_lattice_(view.tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {}
 
-  // Adds triangle i to its leaf's box.
-  [[nodiscard]] bool take(std::uint64_t i, QuadBox& leaf) {
-    const std::uint64_t base = place_of_triangle(view_.tree, i);
-    const VertexTriangle& triangle = triangle_at(checker_, view_, base, read_);
-    const std::uint32_t id = triangle.triangle_id;
-    if (!checker_.require(id < view_.header.triangle_count, base + id_offset(), "tree_triangle.triangle_id")) {
-      return false;
+  // Takes triangles [first, end), those of a leaf. @param box  of them.
+  [[nodiscard]] bool take(std::uint64_t first, std::uint64_t end, QuadBox& box) {
+    if (is_lattice_ || view_.has_effects) {
+      for (std::uint64_t i = first; i < end; ++i) {
+        if (!take_one(i, box)) return false;
+      }
+    } else if (!take_good(first, end, box)) {
+      QuadBox same_box;
+      for (std::uint64_t i = first; i < end; ++i) {
+        if (!take_one(i, same_box)) return false;
+      }
     }
-    if (!is_reserved_zero(base, triangle)) return false;
-    id_sum_ += id;
-    const CornerQuads corners = corner_quads(triangle);
-    const CornerQuad low = corners.low(), high = corners.high();
-    leaf.low = Lanes<4>::min(low, leaf.low);
-    leaf.high = Lanes<4>::max(high, leaf.high);
-    if (view_.has_effects) return is_of_surface(i, base, triangle);
-    // The sum is a number only if all are; the least and the greatest of some may be.
-    const CornerQuad sum = corners.a + corners.b + corners.c;
-    const auto inside = (low >= low_) & (high <= high_) & (sum <= sum);
-    const bool good = (inside.bits() & 7u) == 7u && !corners.have_zero_area();
-    return checker_.require(good, base, "tree_triangle.v");
-  }
-  // To be called for each leaf whose triangles were taken.
-  void take_leaf(const QuadBox& leaf) {
-    bounds_.low = Lanes<4>::min(leaf.low, bounds_.low);
-    bounds_.high = Lanes<4>::max(leaf.high, bounds_.high);
+    bounds_.low = Lanes<4>::min(box.low, bounds_.low);
+    bounds_.high = Lanes<4>::max(box.high, bounds_.high);
+    return true;
   }
 
   [[nodiscard]] bool check_totals() {
@@ -78,6 +68,49 @@ class TreeTriangles {
   }
 
  private:
+  // Of an image of vertices without effects: looks at all triangles at once. @returns false if one of them may be wrong;
+  // none is taken then.
+  [[nodiscard]] bool take_good(std::uint64_t first, std::uint64_t end, QuadBox& box) {
+    std::uint64_t id_sum = 0;
+    std::uint32_t wrong = 0;
+    CornerQuad sum(0.0f);
+    for (std::uint64_t i = first; i < end; ++i) {
+      const auto& triangle = checker_.at<VertexTriangle>(place_of_triangle(view_.tree, i));
+      const CornerQuads corners = corner_quads(triangle);
+      wrong |= triangle.triangle_id < view_.header.triangle_count && corners.surely_have_area() ? 0u : 1u;
+      wrong |= triangle.reserved[0] | triangle.reserved[1];
+      id_sum += triangle.triangle_id;
+      box.add(corners);
+      sum = sum + (corners.a + corners.b + corners.c);
+    }
+    // The sum is a number only if all are; the least and the greatest of some may be.
+    const auto good = (box.low >= low_) & (box.high <= high_) & (sum <= sum);
+    if (wrong != 0 || (good.bits() & 7u) != 7u) return false;
+    id_sum_ += id_sum;
+    return true;
+  }
+
+  // Adds triangle i to a box.
+  [[nodiscard]] bool take_one(std::uint64_t i, QuadBox& box) {
+    const std::uint64_t base = place_of_triangle(view_.tree, i);
+    const VertexTriangle& triangle = triangle_at(checker_, view_, base, read_);
+    const std::uint32_t id = triangle.triangle_id;
+    if (!checker_.require(id < view_.header.triangle_count, base + id_offset(), "tree_triangle.triangle_id")) {
+      return false;
+    }
+    if (!is_reserved_zero(base, triangle)) return false;
+    id_sum_ += id;
+    const CornerQuads corners = corner_quads(triangle);
+    box.add(corners);
+    if (view_.has_effects) return is_of_surface(i, base, triangle);
+    const auto is_inside = [this](CornerQuad corner) {
+      return (((corner >= low_) & (corner <= high_)).bits() & 7u) == 7u;
+    };
+    const bool good =
+        is_inside(corners.a) && is_inside(corners.b) && is_inside(corners.c) && !corners.have_zero_area();
+    return checker_.require(good, base, "tree_triangle.v");
+  }
+
   [[nodiscard]] static Vec3 bounds_of(const float side[3]) { return {side[0], side[1], side[2]}; }
   [[nodiscard]] std::uint64_t id_offset() const { return view_.tree.triangle_bytes - sizeof(std::uint32_t); }
 
@@ -267,10 +300,7 @@ bool check_runs_and_contents(ImageChecker& checker, const SceneImageView& view) 
         continue;
       }
       QuadBox leaf;
-      for (std::uint64_t triangle = run.first; triangle < run.end; ++triangle) {
-        if (!triangles.take(triangle, leaf)) return false;
-      }
-      triangles.take_leaf(leaf);
+      if (!triangles.take(run.first, run.end, leaf)) return false;
       boxes[k] = leaf.grown(margin);
     }
     for (std::uint32_t k = 0; k < kTreeWidth; k += 4) all_boxes.compare(base, node, k, boxes + k);

@@ -37,7 +37,12 @@ struct QuadRows {
     return {L::shuffle_quads<0, 2, 4, 6>(xy01, xy23), L::shuffle_quads<1, 3, 5, 7>(xy01, xy23),
             L::shuffle_quads<0, 2, 4, 6>(z01, z23)};
   }
-  /// Lane by lane.
+  GRIDIRON_INLINE void store(float (*rows)[kTreeWidth], std::uint32_t column) const {
+    x.store(rows[0] + column);
+    y.store(rows[1] + column);
+    z.store(rows[2] + column);
+  }
+  /// One of the columns: the least or the greatest of each row.
   template <class Choose>
   [[nodiscard]] GRIDIRON_INLINE CornerQuad reduced(Choose&& choose) const {
     using L = Lanes<4>;

@@ -76,13 +76,15 @@ class Curve {
   return static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(static_cast<double>(bits) + 0.5) >> 52) - 1022;
 }
 
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t digit_of(Key key, std::uint32_t digit) {
+  return (key.code >> 10 * digit) % kPlaces;
+}
+
 // Sorts keys by their codes, equal ones in the order they have. `from` is changed too.
 void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histograms) {
   for (std::uint32_t i = 0; i < kDigits * kPlaces; ++i) histograms[i] = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
-      ++histograms[digit * kPlaces + (from[i].code >> 10 * digit) % kPlaces];
-    }
+    for (std::uint32_t digit = 0; digit < kDigits; ++digit) ++histograms[digit * kPlaces + digit_of(from[i], digit)];
   }
   for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
     std::uint32_t* const places = histograms + digit * kPlaces;
@@ -92,7 +94,16 @@ void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histogram
       places[i] = sum;
       sum += here;
     }
-    for (std::uint32_t i = 0; i < count; ++i) to[places[(from[i].code >> 10 * digit) % kPlaces]++] = from[i];
+    // Several keys are read before the first of them is written: a processor that has once seen a place read right
+    // after it was written would let each key wait for the one before.
+    constexpr std::uint32_t kGroup = 8;
+    std::uint32_t i = 0;
+    for (; count - i >= kGroup; i += kGroup) {
+      Key keys[kGroup];
+      __builtin_memcpy(keys, from + i, sizeof keys);
+      for (const Key key : keys) to[places[digit_of(key, digit)]++] = key;
+    }
+    for (; i < count; ++i) to[places[digit_of(from[i], digit)]++] = from[i];
     Key* const sorted = to;
     to = from;
     from = sorted;
@@ -173,7 +184,7 @@ class TreeBuilder {
   using Record = typename Form::Record;
 
   TreeBuilder(const Mesh& mesh, std::uint32_t leaf_triangles, std::span<Record> records, std::span<TreeNode> nodes,
-              std::span<std::byte> scratch, TreeSize& size)
+              std::span<std::byte> scratch, TreeSize& size, TreeOrder order)
       : mesh_(mesh),
         form_(mesh),
         leaf_triangles_(leaf_triangles),
@@ -182,7 +193,8 @@ class TreeBuilder {
         keys_(reinterpret_cast<Key*>(scratch.data())),
         spare_(keys_ + mesh.triangles.size()),
         counts_(reinterpret_cast<std::uint32_t*>(spare_ + mesh.triangles.size())),
-        size_(size) {}
+        size_(size),
+        order_(order) {}
 
   [[nodiscard]] Status build() {
     size_ = {};
@@ -208,6 +220,7 @@ class TreeBuilder {
   static constexpr std::int32_t kLevelWeight = 5, kNumberWeight = 2, kRootWeight = 3, kMostWeight = 1000;
   // Of a part's weight, above its size and its number: the first of the largest of those that weigh the most.
   static constexpr std::uint32_t kNumberBits = 4, kWeightShift = kNumberBits + 28;
+  static constexpr std::uint64_t kByNumber = 0xFEDCBA9876543210u;  // TreeNode::order
   static constexpr std::uint32_t kGroups = 4, kGroupSize = kTreeWidth / kGroups;
 
   // --- Triangles --------------------------------------------------------------------------------------------------
@@ -415,11 +428,17 @@ class TreeBuilder {
   // From the last node to the first, so that children come before their parents. Codes are not needed any more.
   void write_all() {
     margin_ = tree_margin_of(size_.low, size_.high);
-    auto* const areas = reinterpret_cast<float*>(spare_);  // by node; there are no more nodes than triangles
-    for (std::uint32_t i = size_.node_count; i-- > 0;) areas[i] = write(i, areas);
+    for (std::uint32_t i = size_.node_count; i-- > 0;) {
+      if (order_ == TreeOrder::kForAnyHit) {
+        write<true>(i);
+      } else {
+        write<false>(i);
+      }
+    }
   }
 
-  // Asks the caches for what a leaf of a node that comes later needs: its keys, then its triangles, then their corners.
+  // Asks the caches for what a leaf of a node that comes later needs: its keys, then its triangles, then their
+  // corners and the place of its records.
   void ask_for_keys(std::uint32_t node, std::uint32_t child_number) const {
     const TreeChild child = nodes_[node].children[child_number];
     if (child.is_leaf()) ask_for(&keys_[child.first()], child.count());
@@ -429,7 +448,7 @@ class TreeBuilder {
     if (!child.is_leaf()) return;
     for (std::uint32_t i = 0; i < child.count(); ++i) __builtin_prefetch(&mesh_.triangles[keys_[child.first() + i].id]);
   }
-  void ask_for_leaf_corners(std::uint32_t node, std::uint32_t child_number) const {
+  void ask_for_leaf(std::uint32_t node, std::uint32_t child_number) const {
     const TreeChild child = nodes_[node].children[child_number];
     if (!child.is_leaf()) return;
     for (std::uint32_t i = 0; i < child.count(); ++i) {
@@ -439,28 +458,31 @@ class TreeBuilder {
   }
 
   // Writes the records of a node's leaves, and the boxes and the order of its children.
-  // @returns the area of the node's triangles.
-  [[nodiscard]] float write(std::uint32_t number, const float* areas) const {
+  template <bool kHasOrder>
+  void write(std::uint32_t number) const {
     TreeNode& node = nodes_[number];
+    auto* const areas = reinterpret_cast<float*>(spare_);  // by node; there are no more nodes than triangles
     float total = 0.0f, densities[kTreeWidth];
     QuadBox boxes[kTreeWidth];
     for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
       if (number >= 3) {
         ask_for_keys(number - 3, i);
         ask_for_triangles(number - 2, i);
-        ask_for_leaf_corners(number - 1, i);
+        ask_for_leaf(number - 1, i);
       }
       if (i >= node.child_count) continue;
       const TreeChild child = node.children[i];
       float area = 0.0f;
       if (child.is_leaf()) {
-        boxes[i] = write_leaf(child, area);
+        boxes[i] = write_leaf<kHasOrder>(child, area);
       } else {
         boxes[i] = QuadBox::of_node(nodes_[child.node_index()]);
-        area = areas[child.node_index()];
+        if constexpr (kHasOrder) area = areas[child.node_index()];
       }
-      total += area;
-      densities[i] = area * (child.is_leaf() ? kLeafDensity : 1.0f) / boxes[i].half_surface();
+      if constexpr (kHasOrder) {
+        total += area;
+        densities[i] = area * (child.is_leaf() ? kLeafDensity : 1.0f) / boxes[i].half_surface();
+      }
     }
     for (std::uint32_t i = 0; i < kTreeWidth; i += 4) {
       CornerQuad lows[4], highs[4];
@@ -468,28 +490,25 @@ class TreeBuilder {
         lows[k] = boxes[i + k].low;
         highs[k] = boxes[i + k].high;
       }
-      const QuadRows low = QuadRows::of(lows), high = QuadRows::of(highs);
-      low.x.store(node.low[0] + i);
-      low.y.store(node.low[1] + i);
-      low.z.store(node.low[2] + i);
-      high.x.store(node.high[0] + i);
-      high.y.store(node.high[1] + i);
-      high.z.store(node.high[2] + i);
+      QuadRows::of(lows).store(node.low, i);
+      QuadRows::of(highs).store(node.high, i);
     }
-    node.order = order_of(densities, node.child_count);
-    return total;
+    node.order = kByNumber;
+    if constexpr (kHasOrder) {
+      areas[number] = total;
+      node.order = order_of(densities, node.child_count);
+    }
   }
 
-  // Writes a leaf's records. @returns its box, and the area of its triangles.
+  // Writes a leaf's records. @returns its box; the area of its triangles if that is asked for.
+  template <bool kHasArea>
   [[nodiscard]] QuadBox write_leaf(TreeChild leaf, float& area) const {
     QuadBox box;
-    float sum = 0.0f;
     for (std::uint32_t k = leaf.first(); k < leaf.first() + leaf.count(); ++k) {
       const CornerQuads corners = form_.write(mesh_, keys_[k].id, records_[k]);
       box.add(corners);
-      sum += area_of(corners);
+      if constexpr (kHasArea) area += area_of(corners);
     }
-    area = sum;
     return box.grown(margin_);
   }
 
@@ -519,28 +538,29 @@ class TreeBuilder {
   Key* spare_;
   std::uint32_t* counts_;
   TreeSize& size_;
+  TreeOrder order_;
   float margin_ = 0.0f;
 };
 
 template <class Form, class Mesh>
 Status build(const Mesh& mesh, std::uint32_t leaf_triangles, std::span<typename Form::Record> records,
-             std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size) {
+             std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size, TreeOrder order) {
   if (leaf_triangles == 0 || leaf_triangles > kMaxTreeLeaf) return Status::kBadParameter;
   if (mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
   if (scratch.size() < tree_scratch_bytes(mesh.triangles.size())) return Status::kMemoryTooSmall;
-  return TreeBuilder<Mesh, Form>(mesh, leaf_triangles, records, nodes, scratch, size).build();
+  return TreeBuilder<Mesh, Form>(mesh, leaf_triangles, records, nodes, scratch, size, order).build();
 }
 
 }  // namespace
 
 Status build_tree(const MeshView& mesh, std::uint32_t leaf_triangles, std::span<VertexTriangle> records,
-                  std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size) {
-  return build<VertexForm>(mesh, leaf_triangles, records, nodes, scratch, size);
+                  std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size, TreeOrder order) {
+  return build<VertexForm>(mesh, leaf_triangles, records, nodes, scratch, size, order);
 }
 
 Status build_tree(const LatticeMesh& mesh, std::uint32_t leaf_triangles, std::span<LatticeTriangle> records,
-                  std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size) {
-  return build<LatticeForm>(mesh, leaf_triangles, records, nodes, scratch, size);
+                  std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size, TreeOrder order) {
+  return build<LatticeForm>(mesh, leaf_triangles, records, nodes, scratch, size, order);
 }
 
 }  // namespace gridiron

@@ -30,6 +30,12 @@ namespace gridiron {
   return triangle_count / 15 + (leaf_triangles < 15 ? bottoms * (15 - leaf_triangles) / 15 : 0) + 2;
 }
 
+/// In which order TreeNode::order names the children of a node.
+enum class TreeOrder : std::uint8_t {
+  kForAnyHit,  ///< the densest first
+  kByNumber,   ///< where no rays ask for any hit: saves the time to find another
+};
+
 /// What was built.
 struct TreeSize {
   std::uint32_t node_count;              ///< node 0 is the root
@@ -49,9 +55,11 @@ struct TreeSize {
 /// Errors: kBadParameter, kBadVertex (beyond kCoordinateLimit), kBadIndex, kNoTriangles, kTooManyTriangles
 /// (kMaxTreeTriangles); kMemoryTooSmall: of any of the three, whose contents are then undefined. Cost: linear.
 [[nodiscard]] Status build_tree(const MeshView& mesh, std::uint32_t leaf_triangles, std::span<VertexTriangle> records,
-                                std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size);
+                                std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size,
+                                TreeOrder order = TreeOrder::kForAnyHit);
 [[nodiscard]] Status build_tree(const LatticeMesh& mesh, std::uint32_t leaf_triangles,
                                 std::span<LatticeTriangle> records, std::span<TreeNode> nodes,
-                                std::span<std::byte> scratch, TreeSize& size);
+                                std::span<std::byte> scratch, TreeSize& size,
+                                TreeOrder order = TreeOrder::kForAnyHit);
 
 }  // namespace gridiron
