@@ -18,9 +18,15 @@ constexpr std::uint32_t kFewTriangles = 32;
 // A leaf stands for more of what it holds than a node, whose triangles a ray may still miss.
 constexpr float kLeafDensity = 1.5f;
 
+// One word, so that it is moved as one.
 struct Key {
-  std::uint32_t code;  // along the Z curve
-  std::uint32_t id;    // of a triangle, or its place in a range that is sorted again
+  std::uint64_t bits;
+
+  [[nodiscard]] static Key of(std::uint32_t code, std::uint32_t id) { return {std::uint64_t{id} << 32 | code}; }
+  // Along the Z curve.
+  [[nodiscard]] std::uint32_t code() const { return static_cast<std::uint32_t>(bits); }
+  // Of a triangle.
+  [[nodiscard]] std::uint32_t id() const { return static_cast<std::uint32_t>(bits >> 32); }
 };
 
 // Twice the area; where floats overflow or underflow any number, as it decides an order alone.
@@ -77,7 +83,7 @@ class Curve {
 }
 
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t digit_of(Key key, std::uint32_t digit) {
-  return (key.code >> 10 * digit) % kPlaces;
+  return (key.code() >> 10 * digit) % kPlaces;
 }
 
 // Sorts keys by their codes, equal ones in the order they have. `from` is changed too.
@@ -100,7 +106,7 @@ void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histogram
     std::uint32_t i = 0;
     for (; count - i >= kGroup; i += kGroup) {
       Key keys[kGroup];
-      __builtin_memcpy(keys, from + i, sizeof keys);
+      for (std::uint32_t k = 0; k < kGroup; ++k) keys[k] = from[i + k];
       for (const Key key : keys) to[places[digit_of(key, digit)]++] = key;
     }
     for (; i < count; ++i) to[places[digit_of(from[i], digit)]++] = from[i];
@@ -253,7 +259,7 @@ class TreeBuilder {
       const QuadBox box{corners.low(), corners.high()};
       bounds.low = Lanes<4>::min(box.low, bounds.low);
       bounds.high = Lanes<4>::max(box.high, bounds.high);
-      spare_[count++] = {curve.code_of(box.middle()), static_cast<std::uint32_t>(i)};
+      spare_[count++] = Key::of(curve.code_of(box.middle()), static_cast<std::uint32_t>(i));
     }
     if (count == 0) return Status::kNoTriangles;
     size_.triangle_count = count;
@@ -271,7 +277,7 @@ class TreeBuilder {
   [[nodiscard]] Range range_of(std::uint32_t begin, std::uint32_t end) const {
     const std::uint32_t size = end - begin;
     if (size <= leaf_triangles_) return {begin, end, -1, 0, 0};
-    const std::int32_t level = width_of(keys_[begin].code ^ keys_[end - 1].code);
+    const std::int32_t level = width_of(keys_[begin].code() ^ keys_[end - 1].code());
     // Rays meet large cells, and a box is worth more above many triangles.
     const std::int32_t weight = 2 * kMostWeight + kLevelWeight * level + kNumberWeight * width_of(size);
     return {begin, end, level, 0, static_cast<std::uint64_t>(weight) << kWeightShift | size << kNumberBits};
@@ -394,7 +400,7 @@ class TreeBuilder {
     std::uint32_t low = range.begin;
     for (std::uint32_t count = range.end - range.begin; count > 0;) {
       const std::uint32_t half = (count + 1) / 2;
-      low += (keys_[low + half - 1].code & bit) != 0 ? 0 : half;
+      low += (keys_[low + half - 1].code() & bit) != 0 ? 0 : half;
       count -= half;
     }
     return low;
@@ -406,7 +412,7 @@ class TreeBuilder {
     const std::uint32_t count = end - begin;
     Key* const keys = keys_ + begin;
     const auto middle_of = [this](const Key& key) {
-      const CornerQuads corners = CornerQuads::of(mesh_, mesh_.triangles[key.id]);
+      const CornerQuads corners = CornerQuads::of(mesh_, mesh_.triangles[key.id()]);
       return corners.low() + corners.high();
     };
     QuadBox middles;
@@ -415,11 +421,11 @@ class TreeBuilder {
     }
     const Curve curve(middles);
     if (count <= kFewTriangles || curve.is_flat()) {
-      for (std::uint32_t i = 0; i < count; ++i) keys[i].code = i;
+      for (std::uint32_t i = 0; i < count; ++i) keys[i] = Key::of(i, keys[i].id());
       return;
     }
     Key* const unsorted = spare_ + begin;
-    for (std::uint32_t i = 0; i < count; ++i) unsorted[i] = {curve.code_of(middle_of(keys[i])), keys[i].id};
+    for (std::uint32_t i = 0; i < count; ++i) unsorted[i] = Key::of(curve.code_of(middle_of(keys[i])), keys[i].id());
     sort_keys(unsorted, keys, count, counts_);
   }
 
@@ -446,13 +452,13 @@ class TreeBuilder {
   void ask_for_triangles(std::uint32_t node, std::uint32_t child_number) const {
     const TreeChild child = nodes_[node].children[child_number];
     if (!child.is_leaf()) return;
-    for (std::uint32_t i = 0; i < child.count(); ++i) __builtin_prefetch(&mesh_.triangles[keys_[child.first() + i].id]);
+    for (std::uint32_t i = 0; i < child.count(); ++i) __builtin_prefetch(&mesh_.triangles[keys_[child.first() + i].id()]);
   }
   void ask_for_leaf(std::uint32_t node, std::uint32_t child_number) const {
     const TreeChild child = nodes_[node].children[child_number];
     if (!child.is_leaf()) return;
     for (std::uint32_t i = 0; i < child.count(); ++i) {
-      ask_for_corners(mesh_, mesh_.triangles[keys_[child.first() + i].id]);
+      ask_for_corners(mesh_, mesh_.triangles[keys_[child.first() + i].id()]);
     }
     ask_for(&records_[child.first()], child.count());
   }
@@ -505,7 +511,7 @@ class TreeBuilder {
   [[nodiscard]] QuadBox write_leaf(TreeChild leaf, float& area) const {
     QuadBox box;
     for (std::uint32_t k = leaf.first(); k < leaf.first() + leaf.count(); ++k) {
-      const CornerQuads corners = form_.write(mesh_, keys_[k].id, records_[k]);
+      const CornerQuads corners = form_.write(mesh_, keys_[k].id(), records_[k]);
       box.add(corners);
       if constexpr (kHasArea) area += area_of(corners);
     }
