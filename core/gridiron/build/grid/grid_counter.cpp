@@ -1,12 +1,12 @@
 // Counting of scene images: see grid_builder.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/triangle_formats.h>
-#include <gridiron/build/corner_quad.h>
 #include <gridiron/build/grid/build_step.h>
 #include <gridiron/build/grid/cell_rows.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/grid_resolution.h>
 #include <gridiron/build/grid/image_layout.h>
 #include <gridiron/build/lattice.h>
+#include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/triangle_records.h>
 
@@ -80,18 +80,19 @@ Status survey(const Mesh& mesh, KeptTriangles& kept) {
 // The same for the tree alone, without the sums.
 template <class Mesh>
 Status survey_for_tree(const Mesh& mesh, KeptTriangles& kept) {
-  const std::uint64_t vertex_count = mesh.vertices.size();
-  CornerQuad low(kFloatMax), high(-kFloatMax);
-  for (const UVec3& t : mesh.triangles) {
-    if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
-    const CornerQuads corners = CornerQuads::of(mesh, t);
-    if (corners.have_zero_area()) continue;
-    ++kept.count;
-    low = Lanes<4>::min(corners.low(), low);
-    high = Lanes<4>::max(corners.high(), high);
-  }
-  kept.minimum = vec3_of(low);
-  kept.maximum = vec3_of(high);
+  FourBoxes bounds = FourBoxes::none();
+  std::uint64_t count = 0;
+  const auto take = [&](std::uint32_t, const FourTriangles& triangles, std::uint32_t kept_bits) GRIDIRON_INLINE_LAMBDA {
+    FourBoxes boxes = triangles.boxes();
+    if (kept_bits != 15u) boxes.keep(kept_bits);
+    bounds.add(boxes);
+    count += count_bits(kept_bits);
+  };
+  GRIDIRON_TRY(for_each_four(mesh, take));
+  kept.count = count;
+  const QuadBox all = QuadBox::around(bounds);
+  kept.minimum = vec3_of(all.low);
+  kept.maximum = vec3_of(all.high);
   return Status::kOk;
 }
 

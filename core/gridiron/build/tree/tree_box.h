@@ -24,37 +24,6 @@ namespace gridiron {
   return {corner_quad(record, 0), corner_quad(record, 1), corner_quad(record, 2)};
 }
 
-/// Four columns of x, y and z, of four quads or as quads.
-struct QuadRows {
-  CornerQuad x, y, z;
-
-  [[nodiscard]] static GRIDIRON_INLINE QuadRows of(const CornerQuad* quads) {
-    using L = Lanes<4>;
-    const CornerQuad xy01 = L::shuffle_quads<0, 1, 4, 5>(quads[0], quads[1]);
-    const CornerQuad xy23 = L::shuffle_quads<0, 1, 4, 5>(quads[2], quads[3]);
-    const CornerQuad z01 = L::shuffle_quads<2, 2, 6, 6>(quads[0], quads[1]);
-    const CornerQuad z23 = L::shuffle_quads<2, 2, 6, 6>(quads[2], quads[3]);
-    return {L::shuffle_quads<0, 2, 4, 6>(xy01, xy23), L::shuffle_quads<1, 3, 5, 7>(xy01, xy23),
-            L::shuffle_quads<0, 2, 4, 6>(z01, z23)};
-  }
-  GRIDIRON_INLINE void store(float (*rows)[kTreeWidth], std::uint32_t column) const {
-    x.store(rows[0] + column);
-    y.store(rows[1] + column);
-    z.store(rows[2] + column);
-  }
-  /// One of the columns: the least or the greatest of each row.
-  template <class Choose>
-  [[nodiscard]] GRIDIRON_INLINE CornerQuad reduced(Choose&& choose) const {
-    using L = Lanes<4>;
-    // x and y at once: of two columns each, then of one; then z.
-    const CornerQuad low_xy = L::shuffle_quads<0, 1, 4, 5>(x, y), high_xy = L::shuffle_quads<2, 3, 6, 7>(x, y);
-    const CornerQuad xy = choose(low_xy, high_xy);                                   // x x y y
-    const CornerQuad zz = choose(z, L::shuffle_quads<2, 3, 0, 1>(z));                // z z
-    const CornerQuad even = L::shuffle_quads<0, 2, 4, 4>(xy, zz), odd = L::shuffle_quads<1, 3, 5, 5>(xy, zz);
-    return choose(even, odd);
-  }
-};
-
 /// The box of triangles or of a node, in lanes; at first empty. Zeros may have another sign than in the corners, which
 /// is lost when the box grows.
 struct QuadBox {
@@ -83,11 +52,13 @@ struct QuadBox {
     return sides.v[0] + sides.v[1] + sides.v[2];
   }
 
+  /// The box of four.
+  [[nodiscard]] static GRIDIRON_INLINE QuadBox around(const FourBoxes& boxes) {
+    return {boxes.low.reduced(least), boxes.high.reduced(greatest)};
+  }
   /// The box of a node: that of its children's boxes. Those that are not there change nothing.
   [[nodiscard]] static GRIDIRON_INLINE QuadBox of_node(const TreeNode& node) {
     using Quad = CornerQuad;
-    const auto least = [](Quad a, Quad b) GRIDIRON_INLINE_LAMBDA { return Lanes<4>::min(a, b); };
-    const auto greatest = [](Quad a, Quad b) GRIDIRON_INLINE_LAMBDA { return Lanes<4>::max(a, b); };
     const auto column = [](const float* sides, auto&& choose) GRIDIRON_INLINE_LAMBDA {
       return choose(choose(Quad::load(sides), Quad::load(sides + 4)), choose(Quad::load(sides + 8), Quad::load(sides + 12)));
     };
@@ -96,6 +67,10 @@ struct QuadBox {
                             column(node.high[2], greatest)};
     return {lows.reduced(least), highs.reduced(greatest)};
   }
+
+ private:
+  [[nodiscard]] static GRIDIRON_INLINE CornerQuad least(CornerQuad a, CornerQuad b) { return Lanes<4>::min(a, b); }
+  [[nodiscard]] static GRIDIRON_INLINE CornerQuad greatest(CornerQuad a, CornerQuad b) { return Lanes<4>::max(a, b); }
 };
 
 /// @returns the margin by which boxes of triangles within these bounds are grown.

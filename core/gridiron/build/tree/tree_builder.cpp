@@ -23,6 +23,15 @@ struct Key {
   std::uint64_t bits;
 
   [[nodiscard]] static Key of(std::uint32_t code, std::uint32_t id) { return {std::uint64_t{id} << 32 | code}; }
+  // Keys of triangles first to first + 3.
+  static GRIDIRON_INLINE void store_four(Lanes<4>::Int codes, std::uint32_t first, Key* keys) {
+    using L = Lanes<4>;
+    const L::Int ids = L::Int::splat(first) + L::Int{{0, 1, 2, 3}};
+    const L::Float low = L::shuffle_quads<0, 4, 1, 5>(L::floats_of(codes), L::floats_of(ids));
+    const L::Float high = L::shuffle_quads<2, 6, 3, 7>(L::floats_of(codes), L::floats_of(ids));
+    __builtin_memcpy(keys, &low, sizeof low);
+    __builtin_memcpy(keys + 2, &high, sizeof high);
+  }
   // Along the Z curve.
   [[nodiscard]] std::uint32_t code() const { return static_cast<std::uint32_t>(bits); }
   // Of a triangle.
@@ -40,26 +49,26 @@ float area_of(const CornerQuads& corners) {
 // The lattice of a Z curve: kPlaces along each axis of a range of middles.
 class Curve {
  public:
-  explicit Curve(const QuadBox& middles) : low_(middles.low) {
-    const CornerQuad extents = middles.high - middles.low;
-    float scales[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+  explicit Curve(const QuadBox& middles) {
     for (int axis = 0; axis < 3; ++axis) {
-      const float extent = extents.v[axis];
+      const float low = middles.low.v[axis], extent = middles.high.v[axis] - low;
+      low_[axis] = CornerQuad(low);
       // The last middle falls into the last place; a smaller extent would have a scale that is no number.
-      if (extent > 0x1p-100f) {
-        scales[axis] = 1023.9375f / extent;
-        is_flat_ = false;
-      }
+      const bool has_extent = extent > 0x1p-100f;
+      scale_[axis] = CornerQuad(has_extent ? 1023.9375f / extent : 0.0f);
+      is_flat_ = is_flat_ && !has_extent;
     }
-    scale_ = CornerQuad::load(scales);
   }
   // All triangles are at one place.
   [[nodiscard]] bool is_flat() const { return is_flat_; }
 
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t code_of(CornerQuad middle) const {
-    const Lanes<4>::Int code = spread(Lanes<4>::truncate((middle - low_) * scale_));
-    const auto word = [&code](int lane) GRIDIRON_INLINE_LAMBDA { return static_cast<std::uint32_t>(code[lane]); };
-    return word(0) | word(1) << 1 | word(2) << 2;
+  // The codes of boxes, by their middles.
+  [[nodiscard]] GRIDIRON_INLINE Lanes<4>::Int codes_of(const FourBoxes& boxes) const {
+    const auto part_of = [this](int axis, CornerQuad low, CornerQuad high) GRIDIRON_INLINE_LAMBDA {
+      return spread(Lanes<4>::truncate(((low + high) - low_[axis]) * scale_[axis]));
+    };
+    return part_of(0, boxes.low.x, boxes.high.x) | part_of(1, boxes.low.y, boxes.high.y) << 1 |
+           part_of(2, boxes.low.z, boxes.high.z) << 2;
   }
 
  private:
@@ -72,7 +81,7 @@ class Curve {
     return (bits | bits << 2) & Int::splat(0x09249249u);
   }
 
-  CornerQuad low_, scale_;
+  CornerQuad low_[3], scale_[3];
   bool is_flat_ = true;
 };
 
@@ -116,28 +125,14 @@ void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histogram
   }
 }
 
-// Triangles ahead of the one that is taken whose corners the caches are asked for.
-constexpr std::size_t kTrianglesAhead = 16;
 // Nodes ahead of the one that is split whose keys are asked for, at most so many.
 constexpr std::uint32_t kNodesAhead = 2, kFewKeys = 256;
-
-[[nodiscard]] std::span<const Vec3> stored_vertices(const MeshView& mesh) {
-  return mesh.vertices;
-}
-[[nodiscard]] std::span<const Vec3> stored_vertices(const LatticeMesh& mesh) {
-  return mesh.vertices.vertices;
-}
 
 // Asks the caches for elements.
 template <class Element>
 void ask_for(const Element* elements, std::uint32_t count) {
   const auto* const bytes = reinterpret_cast<const std::byte*>(elements);
   for (std::uint32_t offset = 0; offset < count * sizeof(Element); offset += 64) __builtin_prefetch(bytes + offset);
-}
-
-template <class Mesh>
-void ask_for_corners(const Mesh& mesh, const UVec3& t) {
-  for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&stored_vertices(mesh)[t[corner]]);
 }
 
 // What a mesh's records are.
@@ -247,26 +242,33 @@ class TreeBuilder {
   [[nodiscard]] Status take_triangles(const QuadBox& vertices) {
     // The least and the greatest middle that a triangle can have.
     const Curve curve({vertices.low + vertices.low, vertices.high + vertices.high});
-    const std::size_t vertex_count = mesh_.vertices.size(), triangle_count = mesh_.triangles.size();
-    QuadBox bounds;
+    FourBoxes bounds = FourBoxes::none();
     std::uint32_t count = 0;
-    for (std::size_t i = 0; i < triangle_count; ++i) {
-      if (i + kTrianglesAhead < triangle_count) ask_for_corners(mesh_, mesh_.triangles[i + kTrianglesAhead]);
-      const UVec3& t = mesh_.triangles[i];
-      if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
-      const CornerQuads corners = CornerQuads::of(mesh_, t);
-      if (corners.have_zero_area()) continue;
-      const QuadBox box{corners.low(), corners.high()};
-      bounds.low = Lanes<4>::min(box.low, bounds.low);
-      bounds.high = Lanes<4>::max(box.high, bounds.high);
-      spare_[count++] = Key::of(curve.code_of(box.middle()), static_cast<std::uint32_t>(i));
-    }
+    const auto take = [&](std::uint32_t first, const FourTriangles& triangles, std::uint32_t kept)
+                          GRIDIRON_INLINE_LAMBDA {
+      FourBoxes boxes = triangles.boxes();
+      const Lanes<4>::Int codes = curve.codes_of(boxes);
+      if (kept == 15u) {
+        Key::store_four(codes, first, spare_ + count);
+        count += 4;
+      } else {
+        for (int lane = 0; lane < 4; ++lane) {
+          if ((kept >> lane & 1u) == 0) continue;
+          const auto code = static_cast<std::uint32_t>(codes[lane]);
+          spare_[count++] = Key::of(code, first + static_cast<std::uint32_t>(lane));
+        }
+        boxes.keep(kept);
+      }
+      bounds.add(boxes);
+    };
+    GRIDIRON_TRY(for_each_four(mesh_, take));
     if (count == 0) return Status::kNoTriangles;
     size_.triangle_count = count;
-    size_.dropped_triangle_count = static_cast<std::uint32_t>(triangle_count) - count;
+    size_.dropped_triangle_count = static_cast<std::uint32_t>(mesh_.triangles.size()) - count;
+    const QuadBox all = QuadBox::around(bounds);
     for (int axis = 0; axis < 3; ++axis) {
-      size_.low[axis] = bounds.low.v[axis];
-      size_.high[axis] = bounds.high.v[axis];
+      size_.low[axis] = all.low.v[axis];
+      size_.high[axis] = all.high.v[axis];
     }
     sort_keys(spare_, keys_, count, counts_);
     return Status::kOk;
@@ -406,26 +408,44 @@ class TreeBuilder {
     return low;
   }
 
+  static void number(Key* keys, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) keys[i] = Key::of(i, keys[i].id());
+  }
+
+  // The boxes of the triangles of the next four keys; if fewer are left, of the last one again.
+  [[nodiscard]] FourBoxes boxes_of(const Key* keys, std::uint32_t left) const {
+    UVec3 triangles[4];
+    for (std::uint32_t k = 0; k < 4; ++k) triangles[k] = mesh_.triangles[keys[k < left ? k : left - 1].id()];
+    return FourTriangles::of(mesh_, triangles).boxes();
+  }
+
   // Gives triangles of one code new ones that differ, and sorts them: on a lattice around them, or by their number if
   // they are few or all in one place.
   void code_again(std::uint32_t begin, std::uint32_t end) {
     const std::uint32_t count = end - begin;
     Key* const keys = keys_ + begin;
-    const auto middle_of = [this](const Key& key) {
-      const CornerQuads corners = CornerQuads::of(mesh_, mesh_.triangles[key.id()]);
-      return corners.low() + corners.high();
-    };
-    QuadBox middles;
-    if (count > kFewTriangles) {
-      for (std::uint32_t i = 0; i < count; ++i) middles.add(middle_of(keys[i]));
+    if (count <= kFewTriangles) {
+      number(keys, count);
+      return;
     }
-    const Curve curve(middles);
-    if (count <= kFewTriangles || curve.is_flat()) {
-      for (std::uint32_t i = 0; i < count; ++i) keys[i] = Key::of(i, keys[i].id());
+    FourBoxes middles = FourBoxes::none();
+    for (std::uint32_t i = 0; i < count; i += 4) {
+      const FourBoxes boxes = boxes_of(keys + i, count - i);
+      const QuadRows middle = {boxes.low.x + boxes.high.x, boxes.low.y + boxes.high.y, boxes.low.z + boxes.high.z};
+      middles.add({middle, middle});
+    }
+    const Curve curve(QuadBox::around(middles));
+    if (curve.is_flat()) {
+      number(keys, count);
       return;
     }
     Key* const unsorted = spare_ + begin;
-    for (std::uint32_t i = 0; i < count; ++i) unsorted[i] = Key::of(curve.code_of(middle_of(keys[i])), keys[i].id());
+    for (std::uint32_t i = 0; i < count; i += 4) {
+      const Lanes<4>::Int codes = curve.codes_of(boxes_of(keys + i, count - i));
+      for (std::uint32_t k = 0; k < 4 && i + k < count; ++k) {
+        unsorted[i + k] = Key::of(static_cast<std::uint32_t>(codes[static_cast<int>(k)]), keys[i + k].id());
+      }
+    }
     sort_keys(unsorted, keys, count, counts_);
   }
 
