@@ -210,7 +210,7 @@ struct FourTriangles {
 template <class Mesh, class Take>
 [[nodiscard]] GRIDIRON_INLINE Status for_each_four(const Mesh& mesh, Take&& take) {
   const std::size_t count = mesh.triangles.size();
-  const std::uint64_t last_vertex = std::uint64_t{mesh.vertices.size()} - 1;
+  const std::size_t vertex_count = mesh.vertices.size();
   UVec3 last_four[4];
   for (std::size_t i = 0; i < count; i += 4) {
     const UVec3* four = &mesh.triangles[i];
@@ -224,11 +224,10 @@ template <class Mesh, class Take>
       const UVec3* const later = four + kTrianglesAhead;
       for (int k = 0; k < 4; ++k) ask_for_corners(mesh, later[k]);
     }
-    std::uint64_t beyond = 0;  // in the highest bit; a branch for each index would cost more
     for (int k = 0; k < 4; ++k) {
-      for (int corner = 0; corner < 3; ++corner) beyond |= last_vertex - std::uint64_t{four[k][corner]};
+      const UVec3& t = four[k];
+      if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
     }
-    if (beyond >> 63 != 0) return Status::kBadIndex;
     const FourTriangles triangles = FourTriangles::of(mesh, four);
     take(static_cast<std::uint32_t>(i), triangles, triangles.with_area() & there);
   }

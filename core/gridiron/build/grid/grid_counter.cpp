@@ -80,19 +80,17 @@ Status survey(const Mesh& mesh, KeptTriangles& kept) {
 // The same for the tree alone, without the sums.
 template <class Mesh>
 Status survey_for_tree(const Mesh& mesh, KeptTriangles& kept) {
-  FourBoxes bounds = FourBoxes::none();
-  std::uint64_t count = 0;
-  const auto take = [&](std::uint32_t, const FourTriangles& triangles, std::uint32_t kept_bits) GRIDIRON_INLINE_LAMBDA {
-    FourBoxes boxes = triangles.boxes();
-    if (kept_bits != 15u) boxes.keep(kept_bits);
-    bounds.add(boxes);
-    count += count_bits(kept_bits);
-  };
-  GRIDIRON_TRY(for_each_four(mesh, take));
-  kept.count = count;
-  const QuadBox all = QuadBox::around(bounds);
-  kept.minimum = vec3_of(all.low);
-  kept.maximum = vec3_of(all.high);
+  const std::uint64_t vertex_count = mesh.vertices.size();
+  QuadBox bounds;
+  for (const UVec3& t : mesh.triangles) {
+    if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
+    const CornerQuads corners = CornerQuads::of(mesh, t);
+    if (corners.have_zero_area()) continue;
+    ++kept.count;
+    bounds.add(corners);
+  }
+  kept.minimum = vec3_of(bounds.low);
+  kept.maximum = vec3_of(bounds.high);
   return Status::kOk;
 }
 
