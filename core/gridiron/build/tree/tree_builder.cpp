@@ -9,8 +9,7 @@
 namespace gridiron {
 namespace {
 
-constexpr std::uint32_t kPlaces = 1u << 10;  // of an axis, and of a digit when codes are sorted
-constexpr std::uint32_t kDigits = 3;
+constexpr std::uint32_t kCodeBits = 30;  // ten of an axis
 
 // Equal codes of more triangles are coded again, on a lattice of their own; fewer are split by their number.
 constexpr std::uint32_t kFewTriangles = 32;
@@ -46,7 +45,7 @@ float area_of(const CornerQuads& corners) {
   return __builtin_sqrtf(squares.v[1] + squares.v[2] + squares.v[0]);
 }
 
-// The lattice of a Z curve: kPlaces along each axis of a range of middles.
+// The lattice of a Z curve: 1,024 places along each axis of a range of middles.
 class Curve {
  public:
   explicit Curve(const QuadBox& middles) {
@@ -91,20 +90,22 @@ class Curve {
   return static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(static_cast<double>(bits) + 0.5) >> 52) - 1022;
 }
 
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t digit_of(Key key, std::uint32_t digit) {
-  return (key.code() >> 10 * digit) % kPlaces;
-}
-
-// Sorts keys by their codes, equal ones in the order they have. `from` is changed too.
-void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histograms) {
-  for (std::uint32_t i = 0; i < kDigits * kPlaces; ++i) histograms[i] = 0;
+// Sorts keys by their codes, equal ones in the order they have, digit by digit: to `to` if there is an odd number of
+// digits, else back to `from`. Both are changed.
+template <std::uint32_t kDigitBits>
+void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* counts) {
+  constexpr std::uint32_t kDigits = kCodeBits / kDigitBits, kValues = 1u << kDigitBits;
+  static_assert(kDigits * kDigitBits == kCodeBits);
+  const auto digit_of = [](Key key, std::uint32_t digit)
+                            GRIDIRON_INLINE_LAMBDA { return (key.code() >> kDigitBits * digit) % kValues; };
+  for (std::uint32_t i = 0; i < kDigits * kValues; ++i) counts[i] = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    for (std::uint32_t digit = 0; digit < kDigits; ++digit) ++histograms[digit * kPlaces + digit_of(from[i], digit)];
+    for (std::uint32_t digit = 0; digit < kDigits; ++digit) ++counts[digit * kValues + digit_of(from[i], digit)];
   }
   for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
-    std::uint32_t* const places = histograms + digit * kPlaces;
+    std::uint32_t* const places = counts + digit * kValues;
     std::uint32_t sum = 0;
-    for (std::uint32_t i = 0; i < kPlaces; ++i) {
+    for (std::uint32_t i = 0; i < kValues; ++i) {
       const std::uint32_t here = places[i];
       places[i] = sum;
       sum += here;
@@ -124,6 +125,8 @@ void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* histogram
     from = sorted;
   }
 }
+constexpr std::uint32_t kFewKeysDigit = 5, kKeysDigit = 10, kManyKeysDigit = 15;  // bits
+constexpr std::uint32_t kFewSortedKeys = 1024;
 
 // Nodes ahead of the one that is split whose keys are asked for, at most so many.
 constexpr std::uint32_t kNodesAhead = 2, kFewKeys = 256;
@@ -270,7 +273,14 @@ class TreeBuilder {
       size_.low[axis] = all.low.v[axis];
       size_.high[axis] = all.high.v[axis];
     }
-    sort_keys(spare_, keys_, count, counts_);
+    if (mesh_.triangles.size() < kManyTreeTriangles) {
+      sort_keys<kKeysDigit>(spare_, keys_, count, counts_);
+    } else {
+      sort_keys<kManyKeysDigit>(spare_, keys_, count, counts_);
+      Key* const sorted = spare_;
+      spare_ = keys_;
+      keys_ = sorted;
+    }
     return Status::kOk;
   }
 
@@ -439,14 +449,19 @@ class TreeBuilder {
       number(keys, count);
       return;
     }
-    Key* const unsorted = spare_ + begin;
+    const bool are_few = count <= kFewSortedKeys;
+    Key* const unsorted = are_few ? keys : spare_ + begin;
     for (std::uint32_t i = 0; i < count; i += 4) {
       const Lanes<4>::Int codes = curve.codes_of(boxes_of(keys + i, count - i));
       for (std::uint32_t k = 0; k < 4 && i + k < count; ++k) {
         unsorted[i + k] = Key::of(static_cast<std::uint32_t>(codes[static_cast<int>(k)]), keys[i + k].id());
       }
     }
-    sort_keys(unsorted, keys, count, counts_);
+    if (are_few) {
+      sort_keys<kFewKeysDigit>(keys, spare_ + begin, count, counts_);
+    } else {
+      sort_keys<kKeysDigit>(unsorted, keys, count, counts_);
+    }
   }
 
   // --- Records and boxes ------------------------------------------------------------------------------------------

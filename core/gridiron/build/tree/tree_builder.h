@@ -14,9 +14,14 @@
 
 namespace gridiron {
 
-/// @returns bytes of working memory for a mesh of so many triangles, dropped ones included.
+/// From how many triangles on codes are sorted by two large digits, not three small ones.
+inline constexpr std::uint64_t kManyTreeTriangles = 1u << 15;
+
+/// @returns bytes of working memory for a mesh of so many triangles, dropped ones included: two keys each, and how often
+/// each value of each digit occurs.
 [[nodiscard]] constexpr std::uint64_t tree_scratch_bytes(std::uint64_t triangle_count) {
-  return 16 * triangle_count + 3 * 1024 * sizeof(std::uint32_t);
+  const std::uint64_t counts = triangle_count < kManyTreeTriangles ? 3u << 10 : 2u << 15;
+  return 16 * triangle_count + counts * sizeof(std::uint32_t);
 }
 
 /// @returns a number of nodes that no mesh of so many triangles exceeds.
