@@ -9,7 +9,8 @@
 namespace gridiron {
 namespace {
 
-constexpr std::uint32_t kCodeBits = 30;  // ten of an axis
+constexpr std::uint32_t kCodeBits = 30;           // ten of an axis
+constexpr std::uint32_t kCodedAgain = 1u << 31;  // of a code that is not one of the whole mesh
 
 // Equal codes of more triangles are coded again, on a lattice of their own; fewer are split by their number.
 constexpr std::uint32_t kFewTriangles = 32;
@@ -277,6 +278,7 @@ class TreeBuilder {
       sort_keys<kKeysDigit>(spare_, keys_, count, counts_);
     } else {
       sort_keys<kManyKeysDigit>(spare_, keys_, count, counts_);
+      ends_ = counts_ + (1u << kManyKeysDigit);
       Key* const sorted = spare_;
       spare_ = keys_;
       keys_ = sorted;
@@ -388,6 +390,17 @@ class TreeBuilder {
     return count;
   }
 
+  // Where a part is split.
+  [[nodiscard]] std::uint32_t middle_of(const Range& part) const {
+    const std::uint32_t first = keys_[part.begin].code(), last = keys_[part.end - 1].code();
+    if (ends_ == nullptr || part.level <= static_cast<std::int32_t>(kManyKeysDigit) || (first & kCodedAgain) != 0) {
+      return first_like_last(part.begin, part.end, first, last);
+    }
+    // Sorting by the high digit has left the end of the keys of each of its values.
+    const std::uint32_t bit = 1u << (part.level - 1);
+    return ends_[((last & ~(bit - 1)) >> kManyKeysDigit) - 1];
+  }
+
   // The first key that has the highest bit in which the first and the last one differ as the last one has it.
   [[nodiscard]] std::uint32_t first_like_last(std::uint32_t begin, std::uint32_t end, std::uint32_t first,
                                               std::uint32_t last) const {
@@ -440,8 +453,7 @@ class TreeBuilder {
       code_again(part.begin, part.end);
       part = range_of(part.begin, part.end);
     }
-    const std::uint32_t middle =
-        first_like_last(part.begin, part.end, keys_[part.begin].code(), keys_[part.end - 1].code());
+    const std::uint32_t middle = middle_of(part);
     for (std::uint32_t k = count; k > i + 1; --k) ranges[k] = ranges[k - 1];
     ranges[i + 1] = range_of(middle, part.end);
     part = range_of(part.begin, middle);
@@ -449,7 +461,7 @@ class TreeBuilder {
   }
 
   static void number(Key* keys, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; ++i) keys[i] = Key::of(i, keys[i].id());
+    for (std::uint32_t i = 0; i < count; ++i) keys[i] = Key::of(i | kCodedAgain, keys[i].id());
   }
 
   // The boxes of the triangles of the next four keys; if fewer are left, of the last one again.
@@ -484,7 +496,8 @@ class TreeBuilder {
     for (std::uint32_t i = 0; i < count; i += 4) {
       const Lanes<4>::Int codes = curve.codes_of(boxes_of(keys + i, count - i));
       for (std::uint32_t k = 0; k < 4 && i + k < count; ++k) {
-        unsorted[i + k] = Key::of(static_cast<std::uint32_t>(codes[static_cast<int>(k)]), keys[i + k].id());
+        const std::uint32_t code = static_cast<std::uint32_t>(codes[static_cast<int>(k)]) | kCodedAgain;
+        unsorted[i + k] = Key::of(code, keys[i + k].id());
       }
     }
     if (are_few) {
@@ -608,6 +621,7 @@ class TreeBuilder {
   Key* keys_;
   Key* spare_;
   std::uint32_t* counts_;
+  const std::uint32_t* ends_ = nullptr;  // of the keys of each value of the high digit; null: not known
   TreeSize& size_;
   TreeOrder order_;
   float margin_ = 0.0f;
