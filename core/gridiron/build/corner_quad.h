@@ -31,6 +31,12 @@ using CornerQuad = Lanes<4>::Float;
   const Lanes<4>::FloatVector high = {point.z, 0.0f, 0.0f, 0.0f};
   return CornerQuad(__builtin_shufflevector(reinterpret_cast<Lanes<4>::FloatVector>(low), high, 0, 1, 4, 5));
 }
+/// @returns a point that is not the last one; the last lane is a coordinate of the next one.
+[[nodiscard]] GRIDIRON_INLINE CornerQuad inner_quad(std::span<const Vec3> points, std::size_t index) {
+  Lanes<4>::FloatVector words;
+  __builtin_memcpy(&words, reinterpret_cast<const std::byte*>(points.data()) + index * sizeof(Vec3), sizeof words);
+  return CornerQuad(words);
+}
 [[nodiscard]] GRIDIRON_INLINE Vec3 vec3_of(CornerQuad quad) {
   return {quad.v[0], quad.v[1], quad.v[2]};
 }
@@ -89,6 +95,15 @@ GRIDIRON_INLINE void ask_for_corners(const Mesh& mesh, const UVec3& triangle) {
   }
 }
 
+[[nodiscard]] GRIDIRON_INLINE bool are_below(const UVec3& indices, std::int64_t end) {
+  return indices.x < end && indices.y < end && indices.z < end;
+}
+/// Whether a triangle's indices are right, and none is the last one.
+template <class Mesh>
+[[nodiscard]] GRIDIRON_INLINE bool are_inner(const Mesh& mesh, const UVec3& triangle) {
+  return are_below(triangle, static_cast<std::int64_t>(mesh.vertices.size()) - 1);
+}
+
 // --- Triangles ----------------------------------------------------------------------------------------------------
 
 /// The corners of a triangle.
@@ -100,11 +115,17 @@ struct CornerQuads {
   static constexpr Lanes<4>::FloatVector kLeast = {0x1p-140f, 0x1p-140f, 0x1p-140f, 0x1p-140f};
 
   /// @param triangle  its indices are right.
-  [[nodiscard]] static GRIDIRON_INLINE CornerQuads of(const MeshView& mesh, const UVec3& triangle) {
+  template <class Mesh>
+  [[nodiscard]] static GRIDIRON_INLINE CornerQuads of(const Mesh& mesh, const UVec3& triangle) {
     return {quad_of(mesh.vertices[triangle.x]), quad_of(mesh.vertices[triangle.y]), quad_of(mesh.vertices[triangle.z])};
   }
-  [[nodiscard]] static GRIDIRON_INLINE CornerQuads of(const LatticeMesh& mesh, const UVec3& triangle) {
-    return {quad_of(mesh.vertices[triangle.x]), quad_of(mesh.vertices[triangle.y]), quad_of(mesh.vertices[triangle.z])};
+  /// The same with single loads, where no corner is the last vertex: see are_inner().
+  [[nodiscard]] static GRIDIRON_INLINE CornerQuads inner(const MeshView& mesh, const UVec3& triangle) {
+    return {inner_quad(mesh.vertices, triangle.x), inner_quad(mesh.vertices, triangle.y),
+            inner_quad(mesh.vertices, triangle.z)};
+  }
+  [[nodiscard]] static GRIDIRON_INLINE CornerQuads inner(const LatticeMesh& mesh, const UVec3& triangle) {
+    return of(mesh, triangle);
   }
 
   [[nodiscard]] GRIDIRON_INLINE CornerQuad low() const { return Lanes<4>::min(Lanes<4>::min(a, b), c); }
@@ -155,15 +176,11 @@ struct FourBoxes {
 struct FourTriangles {
   QuadRows a, b, c;
 
-  /// @param triangles  four, whose indices are right.
-  template <class Mesh>
-  [[nodiscard]] static GRIDIRON_INLINE FourTriangles of(const Mesh& mesh, const UVec3* triangles) {
-    const auto rows_of = [&](int corner) GRIDIRON_INLINE_LAMBDA {
-      CornerQuad quads[4];
-      for (int i = 0; i < 4; ++i) quads[i] = quad_of(mesh.vertices[triangles[i][corner]]);
-      return QuadRows::of(quads);
-    };
-    return {rows_of(0), rows_of(1), rows_of(2)};
+  [[nodiscard]] static GRIDIRON_INLINE FourTriangles of(const CornerQuads* corners) {
+    const CornerQuad a_of[4] = {corners[0].a, corners[1].a, corners[2].a, corners[3].a};
+    const CornerQuad b_of[4] = {corners[0].b, corners[1].b, corners[2].b, corners[3].b};
+    const CornerQuad c_of[4] = {corners[0].c, corners[1].c, corners[2].c, corners[3].c};
+    return {QuadRows::of(a_of), QuadRows::of(b_of), QuadRows::of(c_of)};
   }
 
   [[nodiscard]] GRIDIRON_INLINE FourBoxes boxes() const {
@@ -210,7 +227,7 @@ struct FourTriangles {
 template <class Mesh, class Take>
 [[nodiscard]] GRIDIRON_INLINE Status for_each_four(const Mesh& mesh, Take&& take) {
   const std::size_t count = mesh.triangles.size();
-  const std::size_t vertex_count = mesh.vertices.size();
+  const auto vertex_count = static_cast<std::int64_t>(mesh.vertices.size());
   UVec3 last_four[4];
   for (std::size_t i = 0; i < count; i += 4) {
     const UVec3* four = &mesh.triangles[i];
@@ -224,11 +241,16 @@ template <class Mesh, class Take>
       const UVec3* const later = four + kTrianglesAhead;
       for (int k = 0; k < 4; ++k) ask_for_corners(mesh, later[k]);
     }
-    for (int k = 0; k < 4; ++k) {
-      const UVec3& t = four[k];
-      if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
+    CornerQuads corners[4];
+    if (are_inner(mesh, four[0]) && are_inner(mesh, four[1]) && are_inner(mesh, four[2]) && are_inner(mesh, four[3])) {
+      for (int k = 0; k < 4; ++k) corners[k] = CornerQuads::inner(mesh, four[k]);
+    } else {
+      for (int k = 0; k < 4; ++k) {
+        if (!are_below(four[k], vertex_count)) return Status::kBadIndex;
+        corners[k] = CornerQuads::of(mesh, four[k]);
+      }
     }
-    const FourTriangles triangles = FourTriangles::of(mesh, four);
+    const FourTriangles triangles = FourTriangles::of(corners);
     take(static_cast<std::uint32_t>(i), triangles, triangles.with_area() & there);
   }
   return Status::kOk;

@@ -80,14 +80,21 @@ Status survey(const Mesh& mesh, KeptTriangles& kept) {
 // The same for the tree alone, without the sums.
 template <class Mesh>
 Status survey_for_tree(const Mesh& mesh, KeptTriangles& kept) {
-  const std::uint64_t vertex_count = mesh.vertices.size();
+  const auto vertex_count = static_cast<std::int64_t>(mesh.vertices.size());
   QuadBox bounds;
   for (const UVec3& t : mesh.triangles) {
-    if (t.x >= vertex_count || t.y >= vertex_count || t.z >= vertex_count) return Status::kBadIndex;
-    const CornerQuads corners = CornerQuads::of(mesh, t);
+    CornerQuads corners;
+    if (are_inner(mesh, t)) {
+      corners = CornerQuads::inner(mesh, t);
+    } else {
+      if (!are_below(t, vertex_count)) return Status::kBadIndex;
+      corners = CornerQuads::of(mesh, t);
+    }
     if (corners.have_zero_area()) continue;
     ++kept.count;
-    bounds.add(corners);
+    bounds.add(corners.a);
+    bounds.add(corners.b);
+    bounds.add(corners.c);
   }
   kept.minimum = vec3_of(bounds.low);
   kept.maximum = vec3_of(bounds.high);

@@ -466,9 +466,11 @@ class TreeBuilder {
 
   // The boxes of the triangles of the next four keys; if fewer are left, of the last one again.
   [[nodiscard]] FourBoxes boxes_of(const Key* keys, std::uint32_t left) const {
-    UVec3 triangles[4];
-    for (std::uint32_t k = 0; k < 4; ++k) triangles[k] = mesh_.triangles[keys[k < left ? k : left - 1].id()];
-    return FourTriangles::of(mesh_, triangles).boxes();
+    CornerQuads corners[4];
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      corners[k] = CornerQuads::of(mesh_, mesh_.triangles[keys[k < left ? k : left - 1].id()]);
+    }
+    return FourTriangles::of(corners).boxes();
   }
 
   // Gives triangles of one code new ones that differ, and sorts them: on a lattice around them, or by their number if
