@@ -371,7 +371,9 @@ Status count_within(const MeshView& mesh, Request request, const EffectsView* ef
   GRIDIRON_TRY(check_parts(request.parameters, has_tree));
   if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
   if (has_tree && mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
-  if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
+  QuadBox vertices;
+  const bool are_right = request.parameters.has_grid ? all_in_range(mesh.vertices) : bound_points(mesh.vertices, vertices);
+  if (!are_right) return Status::kBadVertex;
   EffectsRecord record{};
   if (effects != nullptr) {
     GRIDIRON_TRY(check_effects(mesh, *effects));

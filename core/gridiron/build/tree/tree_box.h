@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace gridiron {
 
@@ -72,6 +73,22 @@ struct QuadBox {
   [[nodiscard]] static GRIDIRON_INLINE CornerQuad least(CornerQuad a, CornerQuad b) { return Lanes<4>::min(a, b); }
   [[nodiscard]] static GRIDIRON_INLINE CornerQuad greatest(CornerQuad a, CornerQuad b) { return Lanes<4>::max(a, b); }
 };
+
+/// Bounds points, all of them. @returns false if a coordinate is no number or beyond kCoordinateLimit.
+[[nodiscard]] inline bool bound_points(std::span<const Vec3> points, QuadBox& box) {
+  if (points.empty()) return true;
+  const CornerQuad limit(kCoordinateLimit);
+  QuadBox bounds;
+  Lanes<4>::Mask inside = limit <= limit;
+  const auto add = [&](CornerQuad point) GRIDIRON_INLINE_LAMBDA {
+    bounds.add(point);
+    inside = inside & (Lanes<4>::abs(point) <= limit);
+  };
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) add(inner_quad(points, i));
+  add(quad_of(points.back()));
+  box = bounds;
+  return (inside.bits() & 7u) == 7u;
+}
 
 /// @returns the margin by which boxes of triangles within these bounds are grown.
 [[nodiscard]] inline float tree_margin_of(const float minimum[3], const float maximum[3]) {

@@ -183,6 +183,20 @@ struct LatticeForm {
   }
 };
 
+bool bound_vertices(std::span<const Vec3> vertices, QuadBox& box) {
+  return bound_points(vertices, box);
+}
+bool bound_vertices(const LatticeVertices& vertices, QuadBox& box) {
+  bool are_inside = true;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vec3 point = vertices[i];
+    QuadBox one;
+    are_inside = bound_points({&point, 1}, one) && are_inside;
+    box.add(one.low);
+  }
+  return are_inside;
+}
+
 template <class Mesh, class Form>
 class TreeBuilder {
  public:
@@ -204,7 +218,7 @@ class TreeBuilder {
   [[nodiscard]] Status build() {
     size_ = {};
     QuadBox vertices;
-    GRIDIRON_TRY(bound_vertices(vertices));
+    if (!bound_vertices(mesh_.vertices, vertices)) return Status::kBadVertex;
     GRIDIRON_TRY(take_triangles(vertices));
     const std::uint32_t count = size_.triangle_count;
     if (count > records_.size()) return Status::kMemoryTooSmall;
@@ -229,18 +243,6 @@ class TreeBuilder {
   static constexpr std::uint32_t kGroups = 4, kGroupSize = kTreeWidth / kGroups;
 
   // --- Triangles --------------------------------------------------------------------------------------------------
-
-  [[nodiscard]] Status bound_vertices(QuadBox& box) const {
-    const std::size_t vertex_count = mesh_.vertices.size();
-    const CornerQuad limit(kCoordinateLimit);
-    std::uint32_t inside = 7u;
-    for (std::size_t i = 0; i < vertex_count; ++i) {
-      const CornerQuad p = quad_of(mesh_.vertices[i]);
-      inside &= (Lanes<4>::abs(p) <= limit).bits();
-      box.add(p);
-    }
-    return inside == 7u ? Status::kOk : Status::kBadVertex;
-  }
 
   // Sorts the triangles that have an area by their codes, and bounds them.
   [[nodiscard]] Status take_triangles(const QuadBox& vertices) {
