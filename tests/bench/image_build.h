@@ -41,6 +41,7 @@ class ImageBuild {
 
   [[nodiscard]] Status status() const { return status_; }
   [[nodiscard]] const GridNeed& need() const { return need_; }
+  [[nodiscard]] const std::byte* image() const { return image_.bytes().data(); }
   /// Precondition: open() was called.
   [[nodiscard]] const SceneImageView& view() const { return view_; }
 

@@ -71,8 +71,8 @@ struct QuadRows {
     using L = Lanes<4>;
     // x and y at once: of two columns each, then of one; then z.
     const CornerQuad low_xy = L::shuffle_quads<0, 1, 4, 5>(x, y), high_xy = L::shuffle_quads<2, 3, 6, 7>(x, y);
-    const CornerQuad xy = choose(low_xy, high_xy);                                   // x x y y
-    const CornerQuad zz = choose(z, L::shuffle_quads<2, 3, 0, 1>(z));                // z z
+    const CornerQuad xy = choose(low_xy, high_xy);                     // x x y y
+    const CornerQuad zz = choose(z, L::shuffle_quads<2, 3, 0, 1>(z));  // z z
     const CornerQuad even = L::shuffle_quads<0, 2, 4, 4>(xy, zz), odd = L::shuffle_quads<1, 3, 5, 5>(xy, zz);
     return choose(even, odd);
   }
@@ -131,8 +131,9 @@ struct CornerQuads {
   [[nodiscard]] GRIDIRON_INLINE CornerQuad low() const { return Lanes<4>::min(Lanes<4>::min(a, b), c); }
   [[nodiscard]] GRIDIRON_INLINE CornerQuad high() const { return Lanes<4>::max(Lanes<4>::max(a, b), c); }
 
-  /// False where floats do not decide. Sure, with u = 2^-24 and p - q a component of the normal: an edge component has an
-  /// error of u of itself, a product of two 3 u and 2^-150, the difference u more, together less than 3.01 u (|p| + |q|)
+  /// False where floats do not decide. Sure, with u = 2^-24 and p - q a component of the normal: an edge component has
+  /// an error of u of itself, a product of two 3 u and 2^-150, the difference u more, together less than 3.01 u (|p| +
+  /// |q|)
   /// + u |p - q| + 2^-148. As |q| <= |p| + |p - q|, this is less than 7 u |p| + 5 u |p - q| + 2^-148. Where numbers
   /// overflow the bound is infinite or none, and nothing is greater.
   [[nodiscard]] GRIDIRON_INLINE bool surely_have_area() const {
@@ -211,9 +212,7 @@ struct FourTriangles {
   }
   [[nodiscard]] GRIDIRON_RARE std::uint32_t decide_areas(std::uint32_t sure) const {
     for (int lane = 0; lane < 4; ++lane) {
-      const auto corner = [lane](const QuadRows& rows) {
-        return Vec3(rows.x.v[lane], rows.y.v[lane], rows.z.v[lane]);
-      };
+      const auto corner = [lane](const QuadRows& rows) { return Vec3(rows.x.v[lane], rows.y.v[lane], rows.z.v[lane]); };
       if ((sure >> lane & 1u) == 0 && !has_zero_area(corner(a), corner(b), corner(c))) sure |= 1u << lane;
     }
     return sure;

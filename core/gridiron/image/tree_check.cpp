@@ -23,10 +23,10 @@ const VertexTriangle& triangle_at(const ImageChecker& checker, const SceneImageV
   return read;
 }
 
-// Checks the triangles, each of which is to be taken once. With effects a record has the corners of the surface with its
-// id, which says where the record stands. So no two records have one id, and as there are as many as triangles that are
-// kept, each of these is there. Without, its corners are numbers within the bounds and span an area, and if no triangle
-// was dropped, the sum of the ids is that of all. The bounds are tight.
+// Checks the triangles, each of which is to be taken once. With effects a record has the corners of the surface with
+// its id, which says where the record stands. So no two records have one id, and as there are as many as triangles that
+// are kept, each of these is there. Without, its corners are numbers within the bounds and span an area, and if no
+// triangle was dropped, the sum of the ids is that of all. The bounds are tight.
 class TreeTriangles {
  public:
   TreeTriangles(ImageChecker& checker, const SceneImageView& view)
@@ -68,8 +68,8 @@ class TreeTriangles {
   }
 
  private:
-  // Of an image of vertices without effects: looks at all triangles at once. @returns false if one of them may be wrong;
-  // none is taken then.
+  // Of an image of vertices without effects: looks at all triangles at once. @returns false if one of them may be
+  // wrong; none is taken then.
   [[nodiscard]] bool take_good(std::uint64_t first, std::uint64_t end, QuadBox& box) {
     std::uint64_t id_sum = 0;
     std::uint32_t wrong = 0;
@@ -106,8 +106,7 @@ class TreeTriangles {
     const auto is_inside = [this](CornerQuad corner) {
       return (((corner >= low_) & (corner <= high_)).bits() & 7u) == 7u;
     };
-    const bool good =
-        is_inside(corners.a) && is_inside(corners.b) && is_inside(corners.c) && !corners.have_zero_area();
+    const bool good = is_inside(corners.a) && is_inside(corners.b) && is_inside(corners.c) && !corners.have_zero_area();
     return checker_.require(good, base, "tree_triangle.v");
   }
 
@@ -277,8 +276,8 @@ class TreeBoxes {
 };
 
 // Every child begins where the one before it ends, so the leaves of any node cover its records in order. A child that
-// is a node has too many records for a leaf. Triangles and boxes are as built, a wrong triangle is named first; from the
-// last node to the first, so that a wrong box is named, not that of its parent, which is made of it.
+// is a node has too many records for a leaf. Triangles and boxes are as built, a wrong triangle is named first; from
+// the last node to the first, so that a wrong box is named, not that of its parent, which is made of it.
 bool check_runs_and_contents(ImageChecker& checker, const SceneImageView& view) {
   const TreeRecord& tree = view.tree;
   const float margin = tree_margin_of(tree.bounds_minimum, tree.bounds_maximum);

@@ -372,7 +372,8 @@ Status count_within(const MeshView& mesh, Request request, const EffectsView* ef
   if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
   if (has_tree && mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
   QuadBox vertices;
-  const bool are_right = request.parameters.has_grid ? all_in_range(mesh.vertices) : bound_points(mesh.vertices, vertices);
+  const bool are_right =
+      request.parameters.has_grid ? all_in_range(mesh.vertices) : bound_points(mesh.vertices, vertices);
   if (!are_right) return Status::kBadVertex;
   EffectsRecord record{};
   if (effects != nullptr) {

@@ -61,7 +61,8 @@ struct QuadBox {
   [[nodiscard]] static GRIDIRON_INLINE QuadBox of_node(const TreeNode& node) {
     using Quad = CornerQuad;
     const auto column = [](const float* sides, auto&& choose) GRIDIRON_INLINE_LAMBDA {
-      return choose(choose(Quad::load(sides), Quad::load(sides + 4)), choose(Quad::load(sides + 8), Quad::load(sides + 12)));
+      return choose(choose(Quad::load(sides), Quad::load(sides + 4)),
+                    choose(Quad::load(sides + 8), Quad::load(sides + 12)));
     };
     const QuadRows lows = {column(node.low[0], least), column(node.low[1], least), column(node.low[2], least)};
     const QuadRows highs = {column(node.high[0], greatest), column(node.high[1], greatest),

@@ -9,7 +9,7 @@
 namespace gridiron {
 namespace {
 
-constexpr std::uint32_t kCodeBits = 30;           // ten of an axis
+constexpr std::uint32_t kCodeBits = 30;          // ten of an axis
 constexpr std::uint32_t kCodedAgain = 1u << 31;  // of a code that is not one of the whole mesh
 
 // Equal codes of more triangles are coded again, on a lattice of their own; fewer are split by their number.
@@ -252,21 +252,21 @@ class TreeBuilder {
     std::uint32_t count = 0;
     const auto take = [&](std::uint32_t first, const FourTriangles& triangles, std::uint32_t kept)
                           GRIDIRON_INLINE_LAMBDA {
-      FourBoxes boxes = triangles.boxes();
-      const Lanes<4>::Int codes = curve.codes_of(boxes);
-      if (kept == 15u) {
-        Key::store_four(codes, first, spare_ + count);
-        count += 4;
-      } else {
-        for (int lane = 0; lane < 4; ++lane) {
-          if ((kept >> lane & 1u) == 0) continue;
-          const auto code = static_cast<std::uint32_t>(codes[lane]);
-          spare_[count++] = Key::of(code, first + static_cast<std::uint32_t>(lane));
-        }
-        boxes.keep(kept);
-      }
-      bounds.add(boxes);
-    };
+                            FourBoxes boxes = triangles.boxes();
+                            const Lanes<4>::Int codes = curve.codes_of(boxes);
+                            if (kept == 15u) {
+                              Key::store_four(codes, first, spare_ + count);
+                              count += 4;
+                            } else {
+                              for (int lane = 0; lane < 4; ++lane) {
+                                if ((kept >> lane & 1u) == 0) continue;
+                                const auto code = static_cast<std::uint32_t>(codes[lane]);
+                                spare_[count++] = Key::of(code, first + static_cast<std::uint32_t>(lane));
+                              }
+                              boxes.keep(kept);
+                            }
+                            bounds.add(boxes);
+                          };
     GRIDIRON_TRY(for_each_four(mesh_, take));
     if (count == 0) return Status::kNoTriangles;
     size_.triangle_count = count;
@@ -370,8 +370,8 @@ class TreeBuilder {
     return static_cast<std::uint32_t>(parts);
   }
 
-  // Where all parts become leaves before there are too many, it does not matter which one is split first. Such nodes are
-  // most of all. @returns 0 where they do not, and where codes are equal.
+  // Where all parts become leaves before there are too many, it does not matter which one is split first. Such nodes
+  // are most of all. @returns 0 where they do not, and where codes are equal.
   [[nodiscard]] std::uint32_t split_to_leaves(std::uint32_t begin, std::uint32_t end, Range* ranges) const {
     if (end - begin > kTreeWidth * leaf_triangles_) return 0;
     std::uint32_t ends[kTreeWidth];  // of the parts from `begin` on, the last first
@@ -534,7 +534,8 @@ class TreeBuilder {
   void ask_for_triangles(std::uint32_t node, std::uint32_t child_number) const {
     const TreeChild child = nodes_[node].children[child_number];
     if (!child.is_leaf()) return;
-    for (std::uint32_t i = 0; i < child.count(); ++i) __builtin_prefetch(&mesh_.triangles[keys_[child.first() + i].id()]);
+    for (std::uint32_t i = 0; i < child.count(); ++i)
+      __builtin_prefetch(&mesh_.triangles[keys_[child.first() + i].id()]);
   }
   void ask_for_leaf(std::uint32_t node, std::uint32_t child_number) const {
     const TreeChild child = nodes_[node].children[child_number];

@@ -17,8 +17,8 @@ namespace gridiron {
 /// From how many triangles on codes are sorted by two large digits, not three small ones.
 inline constexpr std::uint64_t kManyTreeTriangles = 1u << 15;
 
-/// @returns bytes of working memory for a mesh of so many triangles, dropped ones included: two keys each, and how often
-/// each value of each digit occurs.
+/// @returns bytes of working memory for a mesh of so many triangles, dropped ones included: two keys each, and how
+/// often each value of each digit occurs.
 [[nodiscard]] constexpr std::uint64_t tree_scratch_bytes(std::uint64_t triangle_count) {
   const std::uint64_t counts = triangle_count < kManyTreeTriangles ? 3u << 10 : 2u << 15;
   return 16 * triangle_count + counts * sizeof(std::uint32_t);
@@ -64,7 +64,6 @@ struct TreeSize {
                                 TreeOrder order = TreeOrder::kForAnyHit);
 [[nodiscard]] Status build_tree(const LatticeMesh& mesh, std::uint32_t leaf_triangles,
                                 std::span<LatticeTriangle> records, std::span<TreeNode> nodes,
-                                std::span<std::byte> scratch, TreeSize& size,
-                                TreeOrder order = TreeOrder::kForAnyHit);
+                                std::span<std::byte> scratch, TreeSize& size, TreeOrder order = TreeOrder::kForAnyHit);
 
 }  // namespace gridiron
