@@ -1,4 +1,5 @@
 // Zero areas and projections against rational arithmetic. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/corner_quad.h>
 #include <gridiron/build/triangle_records.h>
 
 #include "support/rational_vectors.h"
@@ -40,6 +41,7 @@ TEST(ZeroArea, NamedKinds) {
 TEST(ZeroArea, AgreesWithRationals) {
   int zero = 0;
   int not_zero = 0;
+  int sure = 0;
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
     TestRandom random(seed);
     const float scale = std::ldexp(1.0f, static_cast<int>(random.below(240)) - 130);
@@ -54,10 +56,19 @@ TEST(ZeroArea, AgreesWithRationals) {
     }
     const bool expected = exactly_zero_area(a, b, c);
     EXPECT_EQ(has_zero_area(a, b, c), expected) << "seed " << seed;
+    // Floats decide most, and never wrongly.
+    const CornerQuads corners{quad_of(a), quad_of(b), quad_of(c)};
+    EXPECT_EQ(corners.have_zero_area(), expected) << "seed " << seed;
+    EXPECT_FALSE(corners.surely_have_area() && expected) << "seed " << seed;
+    const CornerQuads other{quad_of({0, 0, 0}), quad_of({1, 0, 0}), quad_of({0, 1, 0})};
+    const CornerQuads four[4] = {other, corners, corners, other};
+    EXPECT_EQ(FourTriangles::of(four).with_area(), expected ? 9u : 15u) << "seed " << seed;
+    sure += corners.surely_have_area() ? 1 : 0;
     ++(expected ? zero : not_zero);
   }
   EXPECT_GT(zero, 500);
   EXPECT_GT(not_zero, 500);
+  EXPECT_GT(sure, 100);
 }
 
 struct ProjectionCase {
