@@ -153,9 +153,11 @@ std::uint64_t place_of_node(const TreeRecord& tree, std::uint64_t index) {
   return tree.nodes_offset_bytes + index * sizeof(TreeNode);
 }
 
+constexpr std::uint64_t kOrderByNumber = 0xFEDCBA9876543210u;  // right for any number of children
+
 // Each child once, those that are there first; the others by number.
 bool is_order(std::uint64_t order, std::uint32_t child_count) {
-  if (order == 0xFEDCBA9876543210u) return true;
+  if (order == kOrderByNumber) return true;
   std::uint32_t seen = 0;
   bool good = true;
   for (std::uint32_t place = 0; place < kTreeWidth; ++place) {
