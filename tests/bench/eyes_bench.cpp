@@ -1,12 +1,11 @@
 // Eye rays tile by tile through the tree beside Embree: build, frame, both; what planes and shading cost; two threads.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/tree/tree_builder.h>
-#include <gridiron/image/scene_image.h>
 
 #include <cmath>
 
 #include "bench/bench.h"
+#include "bench/image_build.h"
 #include "core/build/grid/line_buffer.h"
 #include "embree_peer/embree_peer.h"
 #include "support/ply_load.h"
@@ -26,41 +25,7 @@ const test::SceneView kViews[] = {test::kBunnyView,      test::kHorseView,      
                                   test::kConferenceView, test::kConferenceView2, test::kSponzaView,
                                   test::kDragonView};
 
-// An image for EngineId::kTree, with a grid as coarse as that of configuration `tree`.
-GridParameters tree_parameters() {
-  return {.lambda = 0.01f, .macro_width = 4, .has_tree = true};
-}
-
 // --- Our side -----------------------------------------------------------------------------------------------------
-
-// The build of an image in memory that is there: everything from vertices and indices to a checked image.
-class ImageBuild {
- public:
-  explicit ImageBuild(const MeshView& mesh) : mesh_(mesh) {
-    status_ = count_scene_image(mesh, tree_parameters(), need_);
-    if (status_ != Status::kOk) return;
-    image_ = test::LineBuffer(static_cast<std::size_t>(need_.image_bytes));
-    scratch_ = test::LineBuffer(static_cast<std::size_t>(need_.scratch_bytes));
-  }
-
-  void run() {
-    const GridParameters parameters = tree_parameters();
-    if (status_ == Status::kOk) status_ = count_scene_image(mesh_, parameters, need_);
-    if (status_ == Status::kOk) {
-      status_ = build_scene_image(mesh_, parameters, need_, image_.bytes(), scratch_.bytes());
-    }
-    SceneImageView view{};
-    SceneImageError error;
-    if (status_ == Status::kOk) status_ = open_scene_image(image_.bytes(), view, error);
-  }
-  [[nodiscard]] Status status() const { return status_; }
-
- private:
-  const MeshView& mesh_;
-  GridNeed need_{};
-  test::LineBuffer image_, scratch_;
-  Status status_;
-};
 
 // Frames of one view that differ in what they write.
 class Frames {
@@ -197,7 +162,7 @@ bool measure_view(const BenchOptions& options, const test::SceneView& view, Row&
     return false;
   }
   const MeshView mesh_view = mesh->view();
-  test::SceneInMemory scene(mesh_view, tree_parameters());
+  test::SceneInMemory scene(mesh_view, kBestParameters);
   if (scene.status() != Status::kOk) {
     std::printf("%s: status %u\n", view.name, static_cast<unsigned>(scene.status()));
     return false;
@@ -258,17 +223,18 @@ bool measure_view(const BenchOptions& options, const test::SceneView& view, Row&
   // Builds.
   ImageBuild image(mesh_view);
   test::LineBuffer records(mesh_view.triangles.size() * sizeof(VertexTriangle));
-  test::LineBuffer nodes(most_tree_nodes(mesh_view.triangles.size(), 8) * sizeof(TreeNode));
+  test::LineBuffer nodes(most_tree_nodes(mesh_view.triangles.size(), kMaxTreeLeaf) * sizeof(TreeNode));
   test::LineBuffer scratch(tree_scratch_bytes(mesh_view.triangles.size()));
   const Candidate builds[] = {
       {"ours", [&] { image.run(); }},
       {"tree",
        [&] {
          TreeSize size;
-         static_cast<void>(build_tree(
-             mesh_view, 8, {reinterpret_cast<VertexTriangle*>(records.bytes().data()), mesh_view.triangles.size()},
-             {reinterpret_cast<TreeNode*>(nodes.bytes().data()), nodes.bytes().size() / sizeof(TreeNode)},
-             scratch.bytes(), size));
+         static_cast<void>(
+             build_tree(mesh_view, kMaxTreeLeaf,
+                        {reinterpret_cast<VertexTriangle*>(records.bytes().data()), mesh_view.triangles.size()},
+                        {reinterpret_cast<TreeNode*>(nodes.bytes().data()), nodes.bytes().size() / sizeof(TreeNode)},
+                        scratch.bytes(), size));
        }},
       {"low", [&] { ways[0]->scene.build(peer::EmbreeQuality::kLow); }},
       {"medium", [&] { ways[1]->scene.build(peer::EmbreeQuality::kMedium); }}};

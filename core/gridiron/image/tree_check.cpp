@@ -1,7 +1,6 @@
 // Checks of the wide tree: see image_checker.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
 #include <gridiron/build/tree/tree_box.h>
-#include <gridiron/build/triangle_records.h>
 #include <gridiron/image/image_checker.h>
 
 namespace gridiron {
@@ -24,63 +23,129 @@ const VertexTriangle& triangle_at(const ImageChecker& checker, const SceneImageV
   return read;
 }
 
-// With effects a record has the corners of the surface with its id, which says where the record stands. So no two
-// records have one id, and as there are as many as triangles that are kept, each of these is there. Without, its
-// corners are numbers within the bounds and span an area, and if no triangle was dropped, the sum of the ids is that of
-// all. The bounds are tight.
-bool check_tree_triangles(ImageChecker& checker, const SceneImageView& view) {
-  const TreeRecord& tree = view.tree;
-  const float lows[4] = {tree.bounds_minimum[0], tree.bounds_minimum[1], tree.bounds_minimum[2], 0.0f};
-  const float highs[4] = {tree.bounds_maximum[0], tree.bounds_maximum[1], tree.bounds_maximum[2], 0.0f};
-  const CornerQuad low = CornerQuad::load(lows), high = CornerQuad::load(highs);
-  const std::uint64_t id_offset = tree.triangle_bytes - sizeof(std::uint32_t);
-  TreeBox bounds;
-  std::uint64_t id_sum = 0;
-  const bool is_lattice = tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice);
-  VertexTriangle read{};
-  for (std::uint64_t i = 0; i < tree.triangle_count; ++i) {
-    const std::uint64_t base = place_of_triangle(tree, i);
-    const VertexTriangle& triangle = triangle_at(checker, view, base, read);
+// Checks the triangles, each of which is to be taken once. With effects a record has the corners of the surface with
+// its id, which says where the record stands. So no two records have one id, and as there are as many as triangles that
+// are kept, each of these is there. Without, its corners are numbers within the bounds and span an area, and if no
+// triangle was dropped, the sum of the ids is that of all. The bounds are tight.
+class TreeTriangles {
+ public:
+  TreeTriangles(ImageChecker& checker, const SceneImageView& view)
+      : checker_(checker),
+        view_(view),
+        low_(quad_of(bounds_of(view.tree.bounds_minimum))),
+        high_(quad_of(bounds_of(view.tree.bounds_maximum))),
+        is_lattice_(view.tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kLattice)) {}
+
+  // Takes triangles [first, end), those of a leaf. @param box  of them.
+  [[nodiscard]] bool take(std::uint64_t first, std::uint64_t end, QuadBox& box) {
+    if (is_lattice_ || view_.has_effects) {
+      for (std::uint64_t i = first; i < end; ++i) {
+        if (!take_one(i, box)) return false;
+      }
+    } else if (!take_good(first, end, box)) {
+      QuadBox same_box;
+      for (std::uint64_t i = first; i < end; ++i) {
+        if (!take_one(i, same_box)) return false;
+      }
+    }
+    bounds_.low = Lanes<4>::min(box.low, bounds_.low);
+    bounds_.high = Lanes<4>::max(box.high, bounds_.high);
+    return true;
+  }
+
+  [[nodiscard]] bool check_totals() {
+    const TreeRecord& tree = view_.tree;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::uint64_t tree_base = view_.tree_offset_bytes;
+      ImageChecker& checker = checker_;
+      GRIDIRON_REQUIRE(bounds_.low.v[axis] == tree.bounds_minimum[axis], tree_base, tree, bounds_minimum);
+      GRIDIRON_REQUIRE(bounds_.high.v[axis] == tree.bounds_maximum[axis], tree_base, tree, bounds_maximum);
+    }
+    const std::uint64_t count = view_.header.triangle_count;
+    const bool are_all =
+        view_.has_effects || view_.header.dropped_triangle_count != 0 || id_sum_ == count * (count - 1) / 2;
+    return checker_.require(are_all, tree.triangles_offset_bytes, "tree_triangle.triangle_id");
+  }
+
+ private:
+  // Of an image of vertices without effects: looks at all triangles at once. @returns false if one of them may be
+  // wrong; none is taken then.
+  [[nodiscard]] bool take_good(std::uint64_t first, std::uint64_t end, QuadBox& box) {
+    std::uint64_t id_sum = 0;
+    std::uint32_t wrong = 0;
+    CornerQuad sum(0.0f);
+    for (std::uint64_t i = first; i < end; ++i) {
+      const auto& triangle = checker_.at<VertexTriangle>(place_of_triangle(view_.tree, i));
+      const CornerQuads corners = corner_quads(triangle);
+      wrong |= triangle.triangle_id < view_.header.triangle_count && corners.surely_have_area() ? 0u : 1u;
+      wrong |= triangle.reserved[0] | triangle.reserved[1];
+      id_sum += triangle.triangle_id;
+      box.add(corners);
+      sum = sum + (corners.a + corners.b + corners.c);
+    }
+    // The sum is a number only if all are; the least and the greatest of some may be.
+    const auto good = (box.low >= low_) & (box.high <= high_) & (sum <= sum);
+    if (wrong != 0 || (good.bits() & 7u) != 7u) return false;
+    id_sum_ += id_sum;
+    return true;
+  }
+
+  // Adds triangle i to a box.
+  [[nodiscard]] bool take_one(std::uint64_t i, QuadBox& box) {
+    const std::uint64_t base = place_of_triangle(view_.tree, i);
+    const VertexTriangle& triangle = triangle_at(checker_, view_, base, read_);
     const std::uint32_t id = triangle.triangle_id;
-    if (!checker.require(id < view.header.triangle_count, base + id_offset, "tree_triangle.triangle_id")) return false;
-    if (is_lattice) {
-      const auto tree_triangle = checker.read<LatticeTriangle>(base);
-      GRIDIRON_REQUIRE(tree_triangle.reserved == 0, base, tree_triangle, reserved);
-    } else {
-      const VertexTriangle& tree_triangle = triangle;
+    if (!checker_.require(id < view_.header.triangle_count, base + id_offset(), "tree_triangle.triangle_id")) {
+      return false;
+    }
+    if (!is_reserved_zero(base, triangle)) return false;
+    id_sum_ += id;
+    const CornerQuads corners = corner_quads(triangle);
+    box.add(corners);
+    if (view_.has_effects) return is_of_surface(i, base, triangle);
+    const auto is_inside = [this](CornerQuad corner) {
+      return (((corner >= low_) & (corner <= high_)).bits() & 7u) == 7u;
+    };
+    const bool good = is_inside(corners.a) && is_inside(corners.b) && is_inside(corners.c) && !corners.have_zero_area();
+    return checker_.require(good, base, "tree_triangle.v");
+  }
+
+  [[nodiscard]] static Vec3 bounds_of(const float side[3]) { return {side[0], side[1], side[2]}; }
+  [[nodiscard]] std::uint64_t id_offset() const { return view_.tree.triangle_bytes - sizeof(std::uint32_t); }
+
+  [[nodiscard]] bool is_reserved_zero(std::uint64_t base, const VertexTriangle& tree_triangle) {
+    ImageChecker& checker = checker_;
+    if (!is_lattice_) {
       GRIDIRON_REQUIRE(all_zero(tree_triangle.reserved, 2), base, tree_triangle, reserved);
+      return true;
     }
-    id_sum += id;
-    const auto corner = [&](int k) { return Vec3(triangle.v[k][0], triangle.v[k][1], triangle.v[k][2]); };
-    for (int k = 0; k < 3; ++k) bounds.add(corner(k));
-    if (!view.has_effects) {
-      const CornerQuad a = corner_quad(triangle, 0), b = corner_quad(triangle, 1), c = corner_quad(triangle, 2);
-      const auto inside = ((a >= low) & (a <= high)) & ((b >= low) & (b <= high)) & ((c >= low) & (c <= high));
-      const bool good = (inside.bits() & 7u) == 7u && !has_zero_area(corner(0), corner(1), corner(2));
-      if (!checker.require(good, base, "tree_triangle.v")) return false;
-      continue;
-    }
-    const std::uint64_t surface_base = view.effects.surfaces_offset_bytes + std::uint64_t{id} * sizeof(SurfaceRecord);
-    const auto surface = checker.read<SurfaceRecord>(surface_base);
-    if (!checker.require(same_bits(&surface.v[0][0], &triangle.v[0][0], 9), base, "tree_triangle.v")) return false;
-    if (surface.tree_place == i) continue;
+    const bool is_zero = checker.at<LatticeTriangle>(base).reserved == 0;
+    return checker.require(is_zero, base + offsetof(LatticeTriangle, reserved), "tree_triangle.reserved");
+  }
+
+  [[nodiscard]] bool is_of_surface(std::uint64_t i, std::uint64_t base, const VertexTriangle& triangle) {
+    const std::uint32_t id = triangle.triangle_id;
+    const std::uint64_t surface_base = view_.effects.surfaces_offset_bytes + std::uint64_t{id} * sizeof(SurfaceRecord);
+    const auto surface = checker_.read<SurfaceRecord>(surface_base);
+    if (!checker_.require(same_bits(&surface.v[0][0], &triangle.v[0][0], 9), base, "tree_triangle.v")) return false;
+    if (surface.tree_place == i) return true;
     // Either the record has another's id, or the surface names another's place.
     const bool is_elsewhere =
         surface.tree_place == kNoTriangle ||
-        checker.read<std::uint32_t>(place_of_triangle(tree, surface.tree_place) + id_offset) == id;
+        checker_.read<std::uint32_t>(place_of_triangle(view_.tree, surface.tree_place) + id_offset()) == id;
     return is_elsewhere
-               ? checker.require(false, base + id_offset, "tree_triangle.triangle_id")
-               : checker.require(false, surface_base + offsetof(SurfaceRecord, tree_place), "surface.tree_place");
+               ? checker_.require(false, base + id_offset(), "tree_triangle.triangle_id")
+               : checker_.require(false, surface_base + offsetof(SurfaceRecord, tree_place), "surface.tree_place");
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::uint64_t tree_base = view.tree_offset_bytes;
-    GRIDIRON_REQUIRE(bounds.low[axis] == tree.bounds_minimum[axis], tree_base, tree, bounds_minimum);
-    GRIDIRON_REQUIRE(bounds.high[axis] == tree.bounds_maximum[axis], tree_base, tree, bounds_maximum);
-  }
-  const std::uint64_t count = view.header.triangle_count;
-  const bool are_all = view.has_effects || view.header.dropped_triangle_count != 0 || id_sum == count * (count - 1) / 2;
-  return checker.require(are_all, tree.triangles_offset_bytes, "tree_triangle.triangle_id");
-}
+
+  ImageChecker& checker_;
+  const SceneImageView& view_;
+  CornerQuad low_, high_;
+  bool is_lattice_;
+  VertexTriangle read_{};
+  QuadBox bounds_;
+  std::uint64_t id_sum_ = 0;
+};
 
 // --- Nodes ----------------------------------------------------------------------------------------------------------
 
@@ -88,8 +153,11 @@ std::uint64_t place_of_node(const TreeRecord& tree, std::uint64_t index) {
   return tree.nodes_offset_bytes + index * sizeof(TreeNode);
 }
 
+constexpr std::uint64_t kOrderByNumber = 0xFEDCBA9876543210u;  // right for any number of children
+
 // Each child once, those that are there first; the others by number.
 bool is_order(std::uint64_t order, std::uint32_t child_count) {
+  if (order == kOrderByNumber) return true;
   std::uint32_t seen = 0;
   bool good = true;
   for (std::uint32_t place = 0; place < kTreeWidth; ++place) {
@@ -162,19 +230,6 @@ Run run_of(const ImageChecker& checker, const TreeRecord& tree, TreeChild child)
   return {first.first(), std::uint64_t{last.first()} + last.count()};
 }
 
-// The box that the builder gives a child.
-TreeBox box_of_child(const ImageChecker& checker, const SceneImageView& view, TreeChild child, float margin) {
-  const TreeRecord& tree = view.tree;
-  if (!child.is_leaf()) return box_of_node(checker.at<TreeNode>(place_of_node(tree, child.node_index())));
-  QuadBox box;
-  VertexTriangle read{};
-  for (std::uint32_t i = child.first(); i < child.first() + child.count(); ++i) {
-    const VertexTriangle& triangle = triangle_at(checker, view, place_of_triangle(tree, i), read);
-    box.add(corner_quad(triangle, 0), corner_quad(triangle, 1), corner_quad(triangle, 2));
-  }
-  return box.grown(margin);
-}
-
 // Asks the caches for the triangles of a node's leaves.
 void ask_for_triangles(const ImageChecker& checker, const TreeRecord& tree, const TreeNode& node) {
   for (const TreeChild child : node.children) {
@@ -186,37 +241,76 @@ void ask_for_triangles(const ImageChecker& checker, const TreeRecord& tree, cons
   }
 }
 
+// Compares boxes with those that are built.
+class TreeBoxes {
+ public:
+  explicit TreeBoxes(ImageChecker& checker) : checker_(checker) {}
+
+  // Of four children of a node. The first that is wrong is the one to blame.
+  void compare(std::uint64_t base, const TreeNode& node, std::uint32_t child, const QuadBox* boxes) {
+    CornerQuad lows[4], highs[4];
+    for (int i = 0; i < 4; ++i) {
+      lows[i] = boxes[i].low;
+      highs[i] = boxes[i].high;
+    }
+    const QuadRows low = QuadRows::of(lows), high = QuadRows::of(highs);
+    const auto differ = [child](CornerQuad side, const float* sides) GRIDIRON_INLINE_LAMBDA {
+      return Lanes<4>::words_of(side) ^ Lanes<4>::words_of(CornerQuad::load(sides + child));
+    };
+    using Int = Lanes<4>::Int;
+    const Int in_low = differ(low.x, node.low[0]) | differ(low.y, node.low[1]) | differ(low.z, node.low[2]);
+    const Int in_high = differ(high.x, node.high[0]) | differ(high.y, node.high[1]) | differ(high.z, node.high[2]);
+    if (is_zero(in_low | in_high) || wrong_field_ != nullptr) return;
+    const bool is_low = !is_zero(in_low);
+    wrong_place_ = base + (is_low ? offsetof(TreeNode, low) : offsetof(TreeNode, high));
+    wrong_field_ = is_low ? "node.low" : "node.high";
+  }
+  [[nodiscard]] bool check_all() { return checker_.require(wrong_field_ == nullptr, wrong_place_, wrong_field_); }
+
+ private:
+  [[nodiscard]] static GRIDIRON_INLINE bool is_zero(Lanes<4>::Int words) {
+    return (words[0] | words[1] | words[2] | words[3]) == 0;
+  }
+
+  ImageChecker& checker_;
+  std::uint64_t wrong_place_ = 0;
+  const char* wrong_field_ = nullptr;
+};
+
 // Every child begins where the one before it ends, so the leaves of any node cover its records in order. A child that
-// is a node has too many records for a leaf. Boxes are as built; from the last node to the first, so that a wrong box
-// is named, not that of its parent, which is made of it.
-bool check_runs_and_boxes(ImageChecker& checker, const SceneImageView& view) {
+// is a node has too many records for a leaf. Triangles and boxes are as built, a wrong triangle is named first; from
+// the last node to the first, so that a wrong box is named, not that of its parent, which is made of it.
+bool check_runs_and_contents(ImageChecker& checker, const SceneImageView& view) {
   const TreeRecord& tree = view.tree;
   const float margin = tree_margin_of(tree.bounds_minimum, tree.bounds_maximum);
+  TreeTriangles triangles(checker, view);
+  TreeBoxes all_boxes(checker);
   for (std::uint32_t i = tree.node_count; i-- > 0;) {
     const std::uint64_t base = place_of_node(tree, i);
     const auto& node = checker.at<TreeNode>(base);
     if (i > 0) ask_for_triangles(checker, tree, checker.at<TreeNode>(base - sizeof(TreeNode)));
+    QuadBox boxes[kTreeWidth];
     std::uint64_t end = i == 0 ? 0 : run_of(checker, tree, node.children[0]).first;
-    for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
-      TreeBox box;
-      if (k < node.child_count) {
-        const TreeChild child = node.children[k];
-        const Run run = run_of(checker, tree, child);
-        const bool is_large = child.is_leaf() || run.end > run.first + tree.leaf_triangles;
-        GRIDIRON_REQUIRE(run.first == end && is_large, base, node, children);
-        end = run.end;
-        box = box_of_child(checker, view, child, margin);
+    for (std::uint32_t k = 0; k < node.child_count; ++k) {
+      const TreeChild child = node.children[k];
+      const Run run = run_of(checker, tree, child);
+      const bool is_large = child.is_leaf() || run.end > run.first + tree.leaf_triangles;
+      GRIDIRON_REQUIRE(run.first == end && is_large, base, node, children);
+      end = run.end;
+      if (!child.is_leaf()) {
+        boxes[k] = QuadBox::of_node(checker.at<TreeNode>(place_of_node(tree, child.node_index())));
+        continue;
       }
-      for (int axis = 0; axis < 3; ++axis) {
-        GRIDIRON_REQUIRE(same_bits(&node.low[axis][k], &box.low[axis], 1), base, node, low);
-        GRIDIRON_REQUIRE(same_bits(&node.high[axis][k], &box.high[axis], 1), base, node, high);
-      }
+      QuadBox leaf;
+      if (!triangles.take(run.first, run.end, leaf)) return false;
+      boxes[k] = leaf.grown(margin);
     }
+    for (std::uint32_t k = 0; k < kTreeWidth; k += 4) all_boxes.compare(base, node, k, boxes + k);
     if (i != 0) continue;
     GRIDIRON_REQUIRE(end == tree.triangle_count, base, node, children);
     GRIDIRON_REQUIRE((node.child_count == 1) == (end <= tree.leaf_triangles), base, node, child_count);
   }
-  return true;
+  return triangles.check_totals() && all_boxes.check_all();
 }
 
 }  // namespace
@@ -252,8 +346,7 @@ bool check_tree(ImageChecker& checker, const SceneImageView& view) {
   const bool has_lattice =
       same_bits(tree.lattice.origin, grid.lattice.origin, 3) && same_bits(&tree.lattice.step, &grid.lattice.step, 1);
   GRIDIRON_REQUIRE(has_lattice, base, tree, lattice);
-  return check_tree_triangles(checker, view) && check_levels(checker, base, tree) &&
-         check_runs_and_boxes(checker, view);
+  return check_levels(checker, base, tree) && check_runs_and_contents(checker, view);
 }
 
 }  // namespace gridiron

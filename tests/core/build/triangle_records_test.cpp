@@ -1,4 +1,5 @@
 // Zero areas and projections against rational arithmetic. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/corner_quad.h>
 #include <gridiron/build/triangle_records.h>
 
 #include "support/rational_vectors.h"
@@ -36,10 +37,33 @@ TEST(ZeroArea, NamedKinds) {
   EXPECT_FALSE(has_zero_area({0, 0, 0}, {1e30f, 0, 0}, {-1e30f, 1e-30f, 0}));
 }
 
+// Points on a line whose differences are rounded.
+TEST(ZeroArea, FloatsAreNotSureOfRoundedEdges) {
+  int rounded = 0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    TestRandom random(seed);
+    const auto part = [&] { return static_cast<float>(random.below(4095)) - 2047.0f; };
+    const Vec3 step(part(), part(), part());
+    const float scale = std::ldexp(1.0f, static_cast<int>(random.below(100)) - 60);
+    const auto at = [&](float place) { return scale * place * step; };
+    const Vec3 a = at(std::ldexp(-1.0f, 13 + static_cast<int>(random.below(8))));
+    const Vec3 b = at(1.0f + static_cast<float>(random.below(7)));
+    const Vec3 c = at(std::ldexp(1.0f + static_cast<float>(random.below(7)), static_cast<int>(random.below(12))));
+    ASSERT_TRUE(exactly_zero_area(a, b, c)) << "seed " << seed;
+    const CornerQuads corners{quad_of(a), quad_of(b), quad_of(c)};
+    EXPECT_FALSE(corners.surely_have_area()) << "seed " << seed;
+    const CornerQuads four[4] = {corners, corners, corners, corners};
+    EXPECT_EQ(FourTriangles::of(four).with_area(), 0u) << "seed " << seed;
+    rounded += double{b.x} - double{a.x} != double{b.x - a.x} ? 1 : 0;
+  }
+  EXPECT_GT(rounded, 500);
+}
+
 // Collinear points and their neighbours by one unit in the last place, at every scale.
 TEST(ZeroArea, AgreesWithRationals) {
   int zero = 0;
   int not_zero = 0;
+  int sure = 0;
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
     TestRandom random(seed);
     const float scale = std::ldexp(1.0f, static_cast<int>(random.below(240)) - 130);
@@ -54,10 +78,19 @@ TEST(ZeroArea, AgreesWithRationals) {
     }
     const bool expected = exactly_zero_area(a, b, c);
     EXPECT_EQ(has_zero_area(a, b, c), expected) << "seed " << seed;
+    // Floats decide most, and never wrongly.
+    const CornerQuads corners{quad_of(a), quad_of(b), quad_of(c)};
+    EXPECT_EQ(corners.have_zero_area(), expected) << "seed " << seed;
+    EXPECT_FALSE(corners.surely_have_area() && expected) << "seed " << seed;
+    const CornerQuads other{quad_of({0, 0, 0}), quad_of({1, 0, 0}), quad_of({0, 1, 0})};
+    const CornerQuads four[4] = {other, corners, corners, other};
+    EXPECT_EQ(FourTriangles::of(four).with_area(), expected ? 9u : 15u) << "seed " << seed;
+    sure += corners.surely_have_area() ? 1 : 0;
     ++(expected ? zero : not_zero);
   }
   EXPECT_GT(zero, 500);
   EXPECT_GT(not_zero, 500);
+  EXPECT_GT(sure, 100);
 }
 
 struct ProjectionCase {

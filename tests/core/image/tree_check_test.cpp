@@ -251,21 +251,27 @@ TEST(Trees, ARootHasOneChildIfItsTrianglesFitALeaf) {
   expect_refused(built.image, "node.child_count", built.view.tree.nodes_offset_bytes + offsetof(TreeNode, child_count));
 }
 
+// Gives a node's first child the box of these corners, grown.
+void set_first_box(TreeNode& node, const std::vector<Vec3>& corners, float margin) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::minmax_element(corners.begin(), corners.end(),
+                                                 [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+    node.low[axis][0] = grown_low((*low)[axis], margin);
+    node.high[axis][0] = grown_high((*high)[axis], margin);
+  }
+}
+
 TEST(Trees, LeavesEndWithTheLastTriangle) {
   BuiltImage built = build_tree_image(tree_scene(6), 8);
   ASSERT_FALSE(HasFailure());
   edit<TreeNode>(built.image, built.view.tree.nodes_offset_bytes, [&](TreeNode& node) {
     node.children[0] = TreeChild::leaf(0, 5);
-    TreeBox box;
+    std::vector<Vec3> corners;
     for (std::uint32_t i = 0; i < 5; ++i) {
       const auto r = read_record<VertexTriangle>(built.image.bytes(), triangle_place(built.view, i));
-      for (const auto& v : r.v) box.add(Vec3(v[0], v[1], v[2]));
+      for (const auto& v : r.v) corners.emplace_back(v[0], v[1], v[2]);
     }
-    box.grow(tree_margin_of(built.view.tree.bounds_minimum, built.view.tree.bounds_maximum));
-    for (int axis = 0; axis < 3; ++axis) {
-      node.low[axis][0] = box.low[axis];
-      node.high[axis][0] = box.high[axis];
-    }
+    set_first_box(node, corners, tree_margin_of(built.view.tree.bounds_minimum, built.view.tree.bounds_maximum));
   });
   expect_refused(built.image, "node.children", built.view.tree.nodes_offset_bytes + offsetof(TreeNode, children));
 }
@@ -351,12 +357,7 @@ BuiltImage lone_triangle(float far) {
   edit<VertexTriangle>(built.image, view.tree.triangles_offset_bytes, [far](VertexTriangle& r) { r.v[0][0] = -far; });
   edit<TreeRecord>(built.image, view.tree_offset_bytes, [far](TreeRecord& r) { r.bounds_minimum[0] = -far; });
   edit<TreeNode>(built.image, view.tree.nodes_offset_bytes, [far](TreeNode& node) {
-    TreeBox box = box_of({-far, -1, -1}, {0, -1, -1}, {-1, 0, 0});
-    box.grow(tree_margin(far));
-    for (int axis = 0; axis < 3; ++axis) {
-      node.low[axis][0] = box.low[axis];
-      node.high[axis][0] = box.high[axis];
-    }
+    set_first_box(node, {{-far, -1, -1}, {0, -1, -1}, {-1, 0, 0}}, tree_margin(far));
   });
   renew_check_value(built.image);
   return built;

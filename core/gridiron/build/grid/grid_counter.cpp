@@ -6,6 +6,7 @@
 #include <gridiron/build/grid/grid_resolution.h>
 #include <gridiron/build/grid/image_layout.h>
 #include <gridiron/build/lattice.h>
+#include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/triangle_records.h>
 
@@ -41,7 +42,7 @@ struct KeptTriangles {
 };
 
 template <class Mesh>
-Status survey(const Mesh& mesh, bool has_grid, KeptTriangles& kept) {
+Status survey(const Mesh& mesh, KeptTriangles& kept) {
   enter_step<kIsOnLattice<Mesh> ? GridStep::kLatticeBox : GridStep::kTriangleSurvey>();
   const std::uint64_t vertex_count = mesh.vertices.size();
   for (const UVec3& t : mesh.triangles) {
@@ -60,7 +61,6 @@ Status survey(const Mesh& mesh, bool has_grid, KeptTriangles& kept) {
       kept.minimum[axis] = least[axis] < kept.minimum[axis] ? least[axis] : kept.minimum[axis];
       kept.maximum[axis] = greatest[axis] > kept.maximum[axis] ? greatest[axis] : kept.maximum[axis];
     }
-    if (!has_grid) continue;
     double e1[3];
     double e2[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -74,6 +74,30 @@ Status survey(const Mesh& mesh, bool has_grid, KeptTriangles& kept) {
       kept.areas[axis] += 0.5 * __builtin_fabs(e1[u] * e2[v] - e1[v] * e2[u]);
     }
   }
+  return Status::kOk;
+}
+
+// The same for the tree alone, without the sums.
+template <class Mesh>
+Status survey_for_tree(const Mesh& mesh, KeptTriangles& kept) {
+  const auto vertex_count = static_cast<std::int64_t>(mesh.vertices.size());
+  QuadBox bounds;
+  for (const UVec3& t : mesh.triangles) {
+    CornerQuads corners;
+    if (are_inner(mesh, t)) {
+      corners = CornerQuads::inner(mesh, t);
+    } else {
+      if (!are_below(t, vertex_count)) return Status::kBadIndex;
+      corners = CornerQuads::of(mesh, t);
+    }
+    if (corners.have_zero_area()) continue;
+    ++kept.count;
+    bounds.add(corners.a);
+    bounds.add(corners.b);
+    bounds.add(corners.c);
+  }
+  kept.minimum = vec3_of(bounds.low);
+  kept.maximum = vec3_of(bounds.high);
   return Status::kOk;
 }
 
@@ -326,7 +350,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GridRecord grid{};
   KeptTriangles kept;
   const bool has_grid = request.parameters.has_grid;
-  GRIDIRON_TRY(survey(mesh, has_grid, kept));
+  GRIDIRON_TRY(has_grid ? survey(mesh, kept) : survey_for_tree(mesh, kept));
   request.resolved_count = kept.count;
   request.kept_count = kept.count;
   if (request.parameters.format != TriangleFormat::kLattice) return count_mesh(mesh, request, kept, grid, need);
@@ -335,7 +359,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
   const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
   KeptTriangles moved_kept;
-  GRIDIRON_TRY(survey(moved, has_grid, moved_kept));
+  GRIDIRON_TRY(has_grid ? survey(moved, moved_kept) : survey_for_tree(moved, moved_kept));
   request.kept_count = moved_kept.count;
   return count_mesh(moved, request, moved_kept, grid, need);
 }
@@ -347,7 +371,10 @@ Status count_within(const MeshView& mesh, Request request, const EffectsView* ef
   GRIDIRON_TRY(check_parts(request.parameters, has_tree));
   if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
   if (has_tree && mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
-  if (!all_in_range(mesh.vertices)) return Status::kBadVertex;
+  QuadBox vertices;
+  const bool are_right =
+      request.parameters.has_grid ? all_in_range(mesh.vertices) : bound_points(mesh.vertices, vertices);
+  if (!are_right) return Status::kBadVertex;
   EffectsRecord record{};
   if (effects != nullptr) {
     GRIDIRON_TRY(check_effects(mesh, *effects));

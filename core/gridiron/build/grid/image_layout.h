@@ -82,8 +82,9 @@ inline ImageLayout layout_of(const GridRecord& grid, const ImageParts& parts) {
   layout.tree.begin_bytes = layout.effects.end_bytes;
   layout.tree.end_bytes = layout.effects.end_bytes;
   if (parts.has_tree()) {
-    layout.tree = place_tree_sections(static_cast<TriangleFormat>(grid.triangle_format), parts.kept_count,
-                                      parts.parameters.leaf_triangles, layout.effects.end_bytes);
+    layout.tree = place_tree_sections(
+        static_cast<TriangleFormat>(grid.triangle_format), parts.kept_count, parts.parameters.leaf_triangles,
+        parts.effects != nullptr ? TreeOrder::kForAnyHit : TreeOrder::kByNumber, layout.effects.end_bytes);
   }
   layout.image_bytes = layout.tree.end_bytes;
   return layout;

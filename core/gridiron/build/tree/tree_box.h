@@ -6,101 +6,89 @@
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/tree_records.h>
+#include <gridiron/build/corner_quad.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace gridiron {
 
-/// A box of triangles or of a node; at first empty.
-struct TreeBox {
-  float low[3] = {kFloatMax, kFloatMax, kFloatMax};
-  float high[3] = {-kFloatMax, -kFloatMax, -kFloatMax};
-
-  void add(int axis, float value) {
-    low[axis] = value < low[axis] ? value : low[axis];
-    high[axis] = value > high[axis] ? value : high[axis];
-  }
-  void add(const Vec3& p) {
-    for (int axis = 0; axis < 3; ++axis) add(axis, p[axis]);
-  }
-  void add(const TreeBox& box) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = box.low[axis] < low[axis] ? box.low[axis] : low[axis];
-      high[axis] = box.high[axis] > high[axis] ? box.high[axis] : high[axis];
-    }
-  }
-  /// @param margin  tree_margin() of all triangles.
-  void grow(float margin) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = grown_low(low[axis], margin);
-      high[axis] = grown_high(high[axis], margin);
-    }
-  }
-  /// Twice the centre, rounded; the least and the greatest that boxes inside can have.
-  [[nodiscard]] Vec3 middle() const { return {low[0] + high[0], low[1] + high[1], low[2] + high[2]}; }
-  [[nodiscard]] Vec3 low_middle() const { return {low[0] + low[0], low[1] + low[1], low[2] + low[2]}; }
-  [[nodiscard]] Vec3 high_middle() const { return {high[0] + high[0], high[1] + high[1], high[2] + high[2]}; }
-  [[nodiscard]] float half_surface() const {
-    float size[3];
-    for (int axis = 0; axis < 3; ++axis) size[axis] = high[axis] - low[axis];
-    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
-  }
-};
-
-/// x, y and z of a corner, and a number without meaning.
-using CornerQuad = Lanes<4>::Float;
-[[nodiscard]] inline CornerQuad corner_quad(const VertexTriangle& record, int corner) {
+/// @returns corner 0..2 of a record.
+[[nodiscard]] GRIDIRON_INLINE CornerQuad corner_quad(const VertexTriangle& record, int corner) {
   // Behind the last corner there is a reserved word, behind another one the next.
-  float words[4];
-  __builtin_memcpy(words, reinterpret_cast<const std::byte*>(&record) + corner * std::ptrdiff_t{12}, sizeof words);
-  return CornerQuad::load(words);
+  Lanes<4>::FloatVector words;
+  __builtin_memcpy(&words, reinterpret_cast<const std::byte*>(&record) + corner * std::ptrdiff_t{12}, sizeof words);
+  return CornerQuad(words);
+}
+[[nodiscard]] GRIDIRON_INLINE CornerQuads corner_quads(const VertexTriangle& record) {
+  return {corner_quad(record, 0), corner_quad(record, 1), corner_quad(record, 2)};
 }
 
-/// The box of triangles, in lanes; zeros may have another sign than TreeBox gives them, which is lost when it grows.
+/// The box of triangles or of a node, in lanes; at first empty. Zeros may have another sign than in the corners, which
+/// is lost when the box grows.
 struct QuadBox {
   CornerQuad low{kFloatMax}, high{-kFloatMax};
 
-  void add(CornerQuad a, CornerQuad b, CornerQuad c) {
-    low = Lanes<4>::min(Lanes<4>::min(a, b), Lanes<4>::min(c, low));
-    high = Lanes<4>::max(Lanes<4>::max(a, b), Lanes<4>::max(c, high));
+  GRIDIRON_INLINE void add(const CornerQuads& corners) {
+    low = Lanes<4>::min(corners.low(), low);
+    high = Lanes<4>::max(corners.high(), high);
   }
-  /// @returns the box, grown.
-  [[nodiscard]] TreeBox grown(float margin) const {
-    TreeBox box;
-    for (int axis = 0; axis < 3; ++axis) {
-      box.low[axis] = low.v[axis];
-      box.high[axis] = high.v[axis];
-    }
-    box.grow(margin);
-    return box;
+  GRIDIRON_INLINE void add(CornerQuad corner) {
+    low = Lanes<4>::min(corner, low);
+    high = Lanes<4>::max(corner, high);
   }
+  /// @param margin  tree_margin() of all triangles.
+  [[nodiscard]] GRIDIRON_INLINE QuadBox grown(float margin) const {
+    const auto growth_of = [margin](CornerQuad place) GRIDIRON_INLINE_LAMBDA {
+      return Lanes<4>::abs(place) * CornerQuad(kTreeGrowth) + CornerQuad(margin);
+    };
+    return {low - growth_of(low), high + growth_of(high)};
+  }
+  /// Twice the centre, rounded.
+  [[nodiscard]] GRIDIRON_INLINE CornerQuad middle() const { return low + high; }
+  [[nodiscard]] GRIDIRON_INLINE float half_surface() const {
+    const CornerQuad size = high - low;
+    const CornerQuad sides = size * turned(size);
+    return sides.v[0] + sides.v[1] + sides.v[2];
+  }
+
+  /// The box of four.
+  [[nodiscard]] static GRIDIRON_INLINE QuadBox around(const FourBoxes& boxes) {
+    return {boxes.low.reduced(least), boxes.high.reduced(greatest)};
+  }
+  /// The box of a node: that of its children's boxes. Those that are not there change nothing.
+  [[nodiscard]] static GRIDIRON_INLINE QuadBox of_node(const TreeNode& node) {
+    using Quad = CornerQuad;
+    const auto column = [](const float* sides, auto&& choose) GRIDIRON_INLINE_LAMBDA {
+      return choose(choose(Quad::load(sides), Quad::load(sides + 4)),
+                    choose(Quad::load(sides + 8), Quad::load(sides + 12)));
+    };
+    const QuadRows lows = {column(node.low[0], least), column(node.low[1], least), column(node.low[2], least)};
+    const QuadRows highs = {column(node.high[0], greatest), column(node.high[1], greatest),
+                            column(node.high[2], greatest)};
+    return {lows.reduced(least), highs.reduced(greatest)};
+  }
+
+ private:
+  [[nodiscard]] static GRIDIRON_INLINE CornerQuad least(CornerQuad a, CornerQuad b) { return Lanes<4>::min(a, b); }
+  [[nodiscard]] static GRIDIRON_INLINE CornerQuad greatest(CornerQuad a, CornerQuad b) { return Lanes<4>::max(a, b); }
 };
 
-/// @returns the box of a triangle.
-[[nodiscard]] inline TreeBox box_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-  TreeBox box;
-  box.add(a);
-  box.add(b);
-  box.add(c);
-  return box;
-}
-
-/// @returns the box of a node: that of its children's boxes. Those that are not there change nothing.
-[[nodiscard]] inline TreeBox box_of_node(const TreeNode& node) {
-  using Quad = Lanes<4>::Float;
-  TreeBox box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto low_at = [&node, axis](int i) { return Quad::load(node.low[axis] + 4 * i); };
-    const auto high_at = [&node, axis](int i) { return Quad::load(node.high[axis] + 4 * i); };
-    const Quad low = Lanes<4>::min(Lanes<4>::min(low_at(0), low_at(1)), Lanes<4>::min(low_at(2), low_at(3)));
-    const Quad high = Lanes<4>::max(Lanes<4>::max(high_at(0), high_at(1)), Lanes<4>::max(high_at(2), high_at(3)));
-    for (int i = 0; i < 4; ++i) {
-      box.low[axis] = low.v[i] < box.low[axis] ? low.v[i] : box.low[axis];
-      box.high[axis] = high.v[i] > box.high[axis] ? high.v[i] : box.high[axis];
-    }
-  }
-  return box;
+/// Bounds points, all of them. @returns false if a coordinate is no number or beyond kCoordinateLimit.
+[[nodiscard]] inline bool bound_points(std::span<const Vec3> points, QuadBox& box) {
+  if (points.empty()) return true;
+  const CornerQuad limit(kCoordinateLimit);
+  QuadBox bounds;
+  Lanes<4>::Mask inside = limit <= limit;
+  const auto add = [&](CornerQuad point) GRIDIRON_INLINE_LAMBDA {
+    bounds.add(point);
+    inside = inside & (Lanes<4>::abs(point) <= limit);
+  };
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) add(inner_quad(points, i));
+  add(quad_of(points.back()));
+  box = bounds;
+  return (inside.bits() & 7u) == 7u;
 }
 
 /// @returns the margin by which boxes of triangles within these bounds are grown.

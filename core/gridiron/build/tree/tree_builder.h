@@ -14,9 +14,14 @@
 
 namespace gridiron {
 
-/// @returns bytes of working memory for a mesh of so many triangles, dropped ones included.
+/// From how many triangles on codes are sorted by two large digits, not three small ones.
+inline constexpr std::uint64_t kManyTreeTriangles = 1u << 15;
+
+/// @returns bytes of working memory for a mesh of so many triangles, dropped ones included: two keys each, and how
+/// often each value of each digit occurs.
 [[nodiscard]] constexpr std::uint64_t tree_scratch_bytes(std::uint64_t triangle_count) {
-  return 16 * triangle_count + 3 * 1024 * sizeof(std::uint32_t);
+  const std::uint64_t counts = triangle_count < kManyTreeTriangles ? 3u << 10 : 2u << 15;
+  return 16 * triangle_count + counts * sizeof(std::uint32_t);
 }
 
 /// @returns a number of nodes that no mesh of so many triangles exceeds.
@@ -29,6 +34,12 @@ namespace gridiron {
   const std::uint64_t bottoms = triangle_count / (leaf_triangles + 1);
   return triangle_count / 15 + (leaf_triangles < 15 ? bottoms * (15 - leaf_triangles) / 15 : 0) + 2;
 }
+
+/// In which order TreeNode::order names the children of a node.
+enum class TreeOrder : std::uint8_t {
+  kForAnyHit,  ///< the densest first
+  kByNumber,   ///< where no rays ask for any hit: saves the time to find another
+};
 
 /// What was built.
 struct TreeSize {
@@ -49,9 +60,10 @@ struct TreeSize {
 /// Errors: kBadParameter, kBadVertex (beyond kCoordinateLimit), kBadIndex, kNoTriangles, kTooManyTriangles
 /// (kMaxTreeTriangles); kMemoryTooSmall: of any of the three, whose contents are then undefined. Cost: linear.
 [[nodiscard]] Status build_tree(const MeshView& mesh, std::uint32_t leaf_triangles, std::span<VertexTriangle> records,
-                                std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size);
+                                std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size,
+                                TreeOrder order = TreeOrder::kForAnyHit);
 [[nodiscard]] Status build_tree(const LatticeMesh& mesh, std::uint32_t leaf_triangles,
                                 std::span<LatticeTriangle> records, std::span<TreeNode> nodes,
-                                std::span<std::byte> scratch, TreeSize& size);
+                                std::span<std::byte> scratch, TreeSize& size, TreeOrder order = TreeOrder::kForAnyHit);
 
 }  // namespace gridiron

@@ -28,7 +28,7 @@ Status write(const Mesh& mesh, std::span<std::byte> scratch, TreeSections& secti
       mesh, record.leaf_triangles,
       {reinterpret_cast<Record*>(image + triangles.offset_bytes), std::size_t{record.triangle_count}},
       {reinterpret_cast<TreeNode*>(image + nodes.offset_bytes), static_cast<std::size_t>(nodes.element_count)}, scratch,
-      size);
+      size, sections.order);
   if (status != Status::kOk || size.triangle_count != record.triangle_count) return Status::kBadParameter;
 
   nodes.element_count = size.node_count;
@@ -49,8 +49,9 @@ Status write(const Mesh& mesh, std::span<std::byte> scratch, TreeSections& secti
 }  // namespace
 
 TreeSections place_tree_sections(TriangleFormat format, std::uint64_t triangle_count, std::uint32_t leaf_triangles,
-                                 std::uint64_t begin_bytes) {
+                                 TreeOrder order, std::uint64_t begin_bytes) {
   TreeSections sections{};
+  sections.order = order;
   sections.begin_bytes = begin_bytes;
   sections.end_bytes = begin_bytes;
   TreeRecord& record = sections.record;

@@ -6,6 +6,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/base/tree_records.h>
 #include <gridiron/build/lattice.h>
+#include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/platform/status.h>
 #include <gridiron/scene/mesh.h>
 
@@ -22,6 +23,7 @@ struct TreeSections {
   TreeRecord record;                        ///< placed: counts of triangles and offsets; written: complete
   SectionEntry entries[kTreeSectionCount];  ///< in the order in which they lie, without gaps, the nodes last
   std::uint32_t section_count;
+  TreeOrder order;
   std::uint64_t begin_bytes, end_bytes;  ///< multiples of kLineBytes, from the image's first byte
 };
 
@@ -31,8 +33,10 @@ struct TreeSections {
 /// @param format            of the records, kVertices or kLattice.
 /// @param triangle_count    without dropped ones.
 /// @param leaf_triangles    1..kMaxTreeLeaf.
+/// @param order             kByNumber in an image without effects, which no ray for any hit is traced in.
 [[nodiscard]] TreeSections place_tree_sections(TriangleFormat format, std::uint64_t triangle_count,
-                                               std::uint32_t leaf_triangles, std::uint64_t begin_bytes);
+                                               std::uint32_t leaf_triangles, TreeOrder order,
+                                               std::uint64_t begin_bytes);
 
 /// Builds the tree in [begin_bytes, end_bytes) of the image. end_bytes, the last entry and the record then have the
 /// real number of nodes.

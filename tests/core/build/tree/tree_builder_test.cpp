@@ -1,6 +1,10 @@
 // The wide tree: what every tree has, whatever the mesh. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/build/triangle_records.h>
+
+#include <bit>
+#include <cstring>
+#include <glm/common.hpp>
 
 #include "support/test_mesh.h"
 
@@ -313,6 +317,83 @@ TEST(TreeBuilder, CrowdedCellsAreSplitByPlaceNotByNumber) {
   // Each of 1,200 leaves of random triangles would have half the surface of a torus, some 6 squares of 2^-16.
   EXPECT_LT(surfaces, 400 * 0x1p-32);
   EXPECT_LT(leaves, 9600 / 3.0);
+}
+
+// Codes along the Z curve of a mesh's triangles, ten bits an axis.
+std::vector<std::uint32_t> codes_of(const TestMesh& mesh) {
+  Vec3 low(kFloatMax), high(-kFloatMax);
+  for (const Vec3& p : mesh.vertices) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  std::vector<std::uint32_t> codes;
+  for (const UVec3& t : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[t.x], &b = mesh.vertices[t.y], &c = mesh.vertices[t.z];
+    const Vec3 middle = glm::min(glm::min(a, b), c) + glm::max(glm::max(a, b), c);
+    std::uint32_t code = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float scale = 1023.9375f / (2 * high[axis] - 2 * low[axis]);
+      const auto place = static_cast<std::uint32_t>((middle[axis] - 2 * low[axis]) * scale);
+      for (int bit = 0; bit < 10; ++bit) code |= (place >> bit & 1u) << (3 * bit + axis);
+    }
+    codes.push_back(code);
+  }
+  return codes;
+}
+
+// Records follow the curve, and each part of a node ends where a higher bit changes than within it; with and without
+// the large digits of many triangles.
+TEST(TreeBuilder, NodesAreSplitAtTheHighestBits) {
+  static_assert(kManyTreeTriangles == 32768);
+  for (const std::uint32_t count : {32'767u, 32'768u, 50'000u}) {
+    const TestMesh mesh = make_random_soup(count, 0.01f, 3);
+    ASSERT_EQ(mesh.triangles.size(), count);
+    const std::vector<std::uint32_t> codes = codes_of(mesh);
+    const Tree<VertexTriangle> tree = built<VertexTriangle>(mesh.view(), 16);
+    ASSERT_EQ(tree.records.size(), count);
+    const auto code_at = [&](std::size_t i) { return codes[tree.records[i].triangle_id]; };
+    for (std::size_t i = 1; i < count; ++i) ASSERT_LE(code_at(i - 1), code_at(i)) << count << ", record " << i;
+
+    std::vector<std::uint32_t> firsts(tree.nodes.size()), ends(tree.nodes.size());
+    std::size_t compared = 0;
+    for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+      const TreeNode& node = tree.nodes[i];
+      const auto first_of = [&](TreeChild c) { return c.is_leaf() ? c.first() : firsts[c.node_index()]; };
+      const auto end_of = [&](TreeChild c) { return c.is_leaf() ? c.first() + c.count() : ends[c.node_index()]; };
+      firsts[i] = first_of(node.children[0]);
+      ends[i] = end_of(node.children[node.child_count - 1]);
+      for (std::uint32_t k = 0; k + 1 < node.child_count; ++k) {
+        const std::uint32_t end = end_of(node.children[k]);
+        const std::uint32_t change = code_at(end - 1) ^ code_at(end);
+        if (change == 0) continue;  // coded again
+        for (const TreeChild child : {node.children[k], node.children[k + 1]}) {
+          const std::uint32_t within = code_at(first_of(child)) ^ code_at(end_of(child) - 1);
+          ASSERT_LT(std::bit_width(within), std::bit_width(change)) << count << ", node " << i << ", child " << k;
+          ++compared;
+        }
+      }
+    }
+    EXPECT_GT(compared, count / 16);
+  }
+}
+
+TEST(TreeBuilder, OrderByNumberChangesNothingElse) {
+  const TestMesh mesh = make_random_soup(2'000, 0.1f, 4);
+  const Tree<VertexTriangle> tree = built<VertexTriangle>(mesh.view(), 8);
+  std::vector<VertexTriangle> records(mesh.triangles.size());
+  std::vector<TreeNode> nodes(most_tree_nodes(mesh.triangles.size(), 8));
+  std::vector<std::uint64_t> scratch(tree_scratch_bytes(mesh.triangles.size()) / 8);
+  TreeSize size;
+  ASSERT_EQ(build_tree(mesh.view(), 8, records, nodes, std::as_writable_bytes(std::span(scratch)), size,
+                       TreeOrder::kByNumber),
+            Status::kOk);
+  ASSERT_EQ(size.node_count, tree.nodes.size());
+  EXPECT_EQ(std::memcmp(records.data(), tree.records.data(), tree.records.size() * sizeof(VertexTriangle)), 0);
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    EXPECT_EQ(nodes[i].order, 0xFEDCBA9876543210u);
+    nodes[i].order = tree.nodes[i].order;
+    EXPECT_EQ(std::memcmp(&nodes[i], &tree.nodes[i], sizeof(TreeNode)), 0) << i;
+  }
 }
 
 TEST(TreeBuilder, OccludersComeFirst) {
