@@ -17,6 +17,8 @@ namespace gridiron {
 /// The largest relative error of an operation in any rounding mode.
 inline constexpr double kFloatUnit = 0x1p-23;
 inline constexpr std::uint32_t kMostTileWidth = 64;
+/// Pixels by which a direction may be off, so that bounds hold.
+inline constexpr double kMostMoved = 0.6 * 0x1p-6;
 
 /// What all tiles of a frame share, in double.
 struct EyeProjection {
@@ -29,6 +31,33 @@ struct EyeProjection {
   float dir_max;     ///< no component of a direction is larger
   bool is_trusted;   ///< if not, no bound holds and every pixel is decided exactly
 };
+
+/// What the roundings of a direction move, at most: over a frame as project_tile() has it over a tile.
+struct MovedPixels {
+  double pixels;  ///< along columns and rows, w's share counted twice the widest tile's width
+  double w;       ///< relative
+};
+GRIDIRON_OUTLINE inline MovedPixels moved_pixels(const FrameHead& frame, const EyeProjection& eye) {
+  const auto larger = [](double a, double b) { return magnitude(a) > magnitude(b) ? magnitude(a) : magnitude(b); };
+  // The last tile may end beyond the picture.
+  const double width = double(frame.width) + kMostTileWidth, height = double(frame.height) + kMostTileWidth;
+  double moved[3] = {0.0, 0.0, 0.0};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double corner{frame.corner[axis]}, step_x{frame.step_x[axis]}, step_y{frame.step_y[axis]};
+    const double first_column = -step_x, last_column = width * step_x, first_row = -step_y, last_row = height * step_y;
+    const double left = corner + first_column, right = corner + last_column;
+    const double off =
+        magnitude(larger(first_column, last_column)) + magnitude(larger(left, right)) +
+        magnitude(larger(first_row, last_row)) +
+        magnitude(larger(larger(left + first_row, left + last_row), larger(right + first_row, right + last_row)));
+    const double w = eye.rows[2][axis];
+    moved[0] += magnitude(larger(eye.rows[0][axis] + w, eye.rows[0][axis] - width * w)) * off;
+    moved[1] += magnitude(larger(eye.rows[1][axis] + w, eye.rows[1][axis] - height * w)) * off;
+    moved[2] += magnitude(w) * off;
+  }
+  static constexpr double kShare = 1.02 * kFloatUnit;
+  return {kShare * (larger(moved[0], moved[1]) + 2.0 * kMostTileWidth * moved[2]), kShare * moved[2]};
+}
 
 /// Inverts the camera's matrix.
 ///
@@ -75,10 +104,10 @@ GRIDIRON_OUTLINE inline EyeProjection project_eye(const FrameHead& frame, float 
   eye.dir_max = static_cast<float>(most * 1.0001);
   // Where pixels are far smaller than rounding, or numbers leave the range in which products of four keep their
   // precision, exact arithmetic decides everything.
-  const double moved =
-      5.0 * kFloatUnit * most * (eye.sizes[0] + eye.sizes[1] + (8.0 + frame.width + frame.height) * eye.sizes[2]);
-  eye.is_trusted = magnitude(det) > 0x1p-12 * scale && moved < 0x1p-6 && far < 0x1p40 && far * eye.sizes[2] < 0x1p24 &&
-                   far * (eye.sizes[0] + eye.sizes[1]) < 0x1p36 && far * eye.sizes[2] > 0x1p-24;
+  const MovedPixels moved = moved_pixels(frame, eye);
+  eye.is_trusted = magnitude(det) > 0x1p-12 * scale && moved.pixels < kMostMoved && moved.w < 0.6 * 0x1p-9 &&
+                   far < 0x1p40 && far * eye.sizes[2] < 0x1p24 && far * (eye.sizes[0] + eye.sizes[1]) < 0x1p36 &&
+                   far * eye.sizes[2] > 0x1p-24;
   return eye;
 }
 

@@ -270,6 +270,32 @@ TYPED_TEST(TileTracerTest, WithoutBoundsExactArithmeticDecides) {
   expect_exact<TypeParam>(make_random_soup(40, 0.5f, 3), view);
 }
 
+// Large pictures have bounds too, and no tile's directions are off by more than they allow.
+TEST(EyeProjection, IsTrustedWhereEveryTilesDirectionsAre) {
+  for (const Camera& camera : kCameras) {
+    for (const std::uint32_t size : {8u, 45u, 1024u, 4096u, 16'384u}) {
+      const FrameHead frame = view_of(camera, size, size).frame;
+      const EyeProjection eye = project_eye(frame, 2.0f);
+      EXPECT_TRUE(eye.is_trusted || size > 4096 || (size > 45 && camera.tan_half_fov < 0.1f)) << size;
+      const MovedPixels most = moved_pixels(frame, eye);
+      EXPECT_EQ(eye.is_trusted, most.pixels < kMostMoved) << size;
+      float greatest = 0;
+      for (std::uint32_t width = 8; width <= kMostTileWidth; width *= 2) {
+        for (const std::uint32_t left : {0u, size / 2 / width * width, size - 1 - (size - 1) % width}) {
+          for (const std::uint32_t top : {0u, size - 1 - (size - 1) % width}) {
+            TileProjection tile;
+            project_tile(frame, eye, {left, top, -0.5f, 0.5f}, width, tile);
+            greatest = std::max(greatest, tile.direction_error);
+            ASSERT_LE(tile.w_error, most.w);
+          }
+        }
+      }
+      EXPECT_LE(greatest, most.pixels);
+      EXPECT_GT(greatest, 0.2 * most.pixels) << size;
+    }
+  }
+}
+
 // Accuracy::kFast leaves no gap: a closed surface hides what is in it.
 TYPED_TEST(TileTracerTest, FastHasNoLeaks) {
   const TestMesh mesh = joined(make_box({-0.1f, -0.1f, -0.1f}, {0.1f, 0.1f, 0.1f}), make_sphere(24, 24, 1.0f));
