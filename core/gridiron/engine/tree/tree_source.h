@@ -261,10 +261,10 @@ class TreeSource {
   [[nodiscard]] GRIDIRON_OUTLINE Status start(TreeChild child, std::uint32_t& slot) {
     std::uint32_t& turn = cache().turns[slot / Cache::kWays];
     // Of those that were taken, or of all, the one that was fetched longest ago makes room.
-    static constexpr std::uint32_t kAll = (1u << Cache::kWays) - 1;
-    const std::uint32_t free = ~(wanted_ >> slot) & kAll;
-    const std::uint32_t from_turn = (free | free << Cache::kWays) >> turn & kAll;
-    const std::uint32_t way = (turn + lowest_bit(from_turn | 1u << Cache::kWays)) % Cache::kWays;
+    std::uint32_t way = turn;
+    for (std::uint32_t i = 0; i < Cache::kWays && (wanted_ >> (slot + way) & 1u) != 0; ++i) {
+      way = (way + 1) % Cache::kWays;
+    }
     slot += way;
     turn = (way + 1) % Cache::kWays;
     wanted_ |= 1u << slot;
