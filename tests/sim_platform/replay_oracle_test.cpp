@@ -215,7 +215,7 @@ TileTrace random_tile(std::uint32_t tile_id, std::mt19937& random) {
         steps.put(16 * (1 + below(60)), static_cast<std::uint8_t>(below(2)), true, 16 * below(1000));
         break;
       default:
-        steps.wait(x & (bit(kFirstOutputTag) - 1), below(4));
+        steps.wait(static_cast<std::uint32_t>(random()) & (bit(kFirstOutputTag) - 1), below(4));
     }
   }
   return steps;
@@ -232,7 +232,7 @@ MachineProfile random_machine(std::mt19937& random) {
   machine.channel_bytes_per_cycle = 1 + below(10);
   machine.core_line_interval_cycles = below(30);
   machine.claim_cycles = below(400);
-  machine.latency_seed = x;
+  machine.latency_seed = static_cast<std::uint32_t>(random());
   const double near = below(500), far = 500 + below(8000);
   const double share = (1 + below(30)) / 100.0;
   switch (below(4)) {
