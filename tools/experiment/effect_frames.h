@@ -84,7 +84,7 @@ void check_absent_costs(const EffectFrame& frame, std::uint32_t expected, const 
 
 /// A node's first child is asked for when its rays are known, and taken at once: that wait stays, but it is little of
 /// the cores' time.
-inline constexpr double kLeastHiddenShare = 0.6, kMostWaitShare = 0.035;
+inline constexpr double kLeastHiddenShare = 0.6, kMostWaitShare = 0.03;
 
 /// @returns the share of waits for secondary rays that buffering hides; 1 without such waits.
 [[nodiscard]] double hidden_share(const EffectFrame& single, const EffectFrame& buffered);

@@ -47,7 +47,8 @@ class TileRenderer {
     }
     share_queue();
     // 2. Tiles.
-    for (TileClaim claim = transfers_.claim_tile();; claim = transfers_.claim_tile()) {
+    for (;;) {
+      const TileClaim claim = transfers_.claim_tile();
       if (claim.kind == TileClaim::Kind::kAborted) return finish(Status::kAborted);
       if (claim.kind == TileClaim::Kind::kDeadline) return finish(Status::kDeadline);
       if (claim.kind == TileClaim::Kind::kNone) return finish(Status::kOk);

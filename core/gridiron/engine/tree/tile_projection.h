@@ -37,7 +37,7 @@ struct MovedPixels {
   double pixels;  ///< along columns and rows, w's share counted twice the widest tile's width
   double w;       ///< relative
 };
-GRIDIRON_OUTLINE inline MovedPixels moved_pixels(const FrameHead& frame, const EyeProjection& eye) {
+GRIDIRON_RARE inline MovedPixels moved_pixels(const FrameHead& frame, const EyeProjection& eye) {
   const auto larger = [](double a, double b) { return magnitude(a) > magnitude(b) ? magnitude(a) : magnitude(b); };
   // The last tile may end beyond the picture.
   const double width = double(frame.width) + kMostTileWidth, height = double(frame.height) + kMostTileWidth;
@@ -64,7 +64,7 @@ GRIDIRON_OUTLINE inline MovedPixels moved_pixels(const FrameHead& frame, const E
 /// Rows are products of two columns over the determinant: with doubles of 2^-52
 /// their error is below 2^-50 |a||b| / det each, and the determinant's own relative error below 2^-49 scale / det. As
 /// det > 2^-12 scale, both together are below 2^-36 of a row's size.
-GRIDIRON_OUTLINE inline EyeProjection project_eye(const FrameHead& frame, float largest) {
+GRIDIRON_RARE inline EyeProjection project_eye(const FrameHead& frame, float largest) {
   EyeProjection eye{};
   double first[3], step_x[3], step_y[3], most = 0.0, far = double{largest};
   for (int axis = 0; axis < 3; ++axis) {

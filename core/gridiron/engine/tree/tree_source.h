@@ -230,13 +230,18 @@ class TreeSource {
   [[nodiscard]] static std::uint32_t first_byte_of(std::uint64_t address) {
     return static_cast<std::uint32_t>(address) % kPortableCongruenceBytes;
   }
-  // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Tags go round, so that
-  // a wait for one child hardly ever is for another that was asked for later.
-  [[nodiscard]] std::uint8_t next_tag(std::uint32_t slot, TreeChild child) {
-    static constexpr std::uint32_t kTags = kMacroTagCount;
-    static_assert(kTags <= kTriangleTagCount);
+  // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Where slots are more than
+  // tags, these go round, so that a wait for one child hardly ever is for another that was asked for later.
+  static constexpr std::uint32_t kTags = kMacroTagCount;
+  static_assert(kTags <= kTriangleTagCount);
+  static constexpr bool kHasTagOfEachSlot = Cache::kSlots <= kTags;
+  [[nodiscard]] static std::uint8_t tag_of(std::uint32_t number, TreeChild child) {
     const std::uint32_t first = child.is_leaf() ? std::uint32_t{kFirstTriangleTag} : std::uint32_t{kFirstMacroTag};
-    const auto tag = static_cast<std::uint8_t>(first + fetched_ % kTags);
+    return static_cast<std::uint8_t>(first + number);
+  }
+  [[nodiscard]] std::uint8_t next_tag(std::uint32_t slot, TreeChild child) {
+    if constexpr (kHasTagOfEachSlot) return tag_of(slot, child);
+    const std::uint8_t tag = tag_of(fetched_ % kTags, child);
     ++fetched_;
     cache().tags[slot] = tag;
     return tag;
@@ -257,16 +262,18 @@ class TreeSource {
     return found;
   }
 
-  // @param slot  as find() left it, without a way; gets the child's.
-  [[nodiscard]] GRIDIRON_OUTLINE Status start(TreeChild child, std::uint32_t& slot) {
-    std::uint32_t& turn = cache().turns[slot / Cache::kWays];
+  // @param first_then_taken  the slot of the first way, as find() left it; gets the child's.
+  [[nodiscard]] GRIDIRON_OUTLINE Status start(TreeChild child, std::uint32_t& first_then_taken) {
+    const std::uint32_t first = first_then_taken;
+    std::uint32_t& turn = cache().turns[first / Cache::kWays];
     // Of those that were taken, or of all, the one that was fetched longest ago makes room.
     std::uint32_t way = turn;
-    for (std::uint32_t i = 0; i < Cache::kWays && (wanted_ >> (slot + way) & 1u) != 0; ++i) {
+    for (std::uint32_t i = 0; i < Cache::kWays && (wanted_ >> (first + way) & 1u) != 0; ++i) {
       way = (way + 1) % Cache::kWays;
     }
-    slot += way;
     turn = (way + 1) % Cache::kWays;
+    const std::uint32_t slot = first + way;
+    first_then_taken = slot;
     wanted_ |= 1u << slot;
     if ((pending_ >> slot & 1u) != 0) GRIDIRON_TRY(arrive(slot));
     cache().keys[slot] = child.bits;
@@ -302,9 +309,9 @@ class TreeSource {
     return (pending_ >> slot & 1u) != 0 ? arrive(slot) : Status::kOk;
   }
 
-  [[nodiscard]] Status arrive(std::uint32_t slot) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status arrive(std::uint32_t slot) {
     const TreeChild child{cache().keys[slot]};
-    GRIDIRON_TRY(transfers_.wait(cache().tags[slot]));
+    GRIDIRON_TRY(transfers_.wait(kHasTagOfEachSlot ? tag_of(slot, child) : cache().tags[slot]));
     pending_ &= ~(1u << slot);
     return is_on_lattice_ && child.is_leaf() ? spread(slot, child) : Status::kOk;
   }
