@@ -71,14 +71,14 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(49),   189.8},  // list_ray, of effects
     {WorkId(50),  5246.8},  // list_beam, of effects
     {WorkId(51),  1728.6},  // list_beam_node, of effects
-    {WorkId(52),   305.0},  // list_child, of effects
+    {WorkId(52),   310.5},  // list_child, of effects
     {WorkId(53),    39.9},  // list_entry, of effects
-    {WorkId(54),  1314.9},  // list_node, of effects
+    {WorkId(54),  1330.3},  // list_node, of effects
     {WorkId(55),   153.4},  // list_run, of effects
     {WorkId(56),   454.9},  // list_ray_node, of effects
     {WorkId(57),   457.7},  // list_box_quad, of effects
     {WorkId(58),   391.3},  // list_shared_box, of effects
-    {WorkId(59),  2171.6},  // list_leaf, of effects
+    {WorkId(59),  2193.2},  // list_leaf, of effects
     {WorkId(60),   941.9},  // list_triangle_group, of effects
     {WorkId(61),  3064.0},  // list_shared_leaf, of effects
     {WorkId(62),   612.8},  // list_shared_group, of effects
@@ -87,15 +87,15 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(65),  1422.3},  // surface_point, of effects
     {WorkId(66),   322.8},  // smooth_normal, of effects
     {WorkId(67),    47.0},  // jitter_seed, of effects
-    {WorkId(68),   116.2},  // shadow_ray, of effects
-    {WorkId(69),    88.7},  // area_place, of effects
+    {WorkId(68),   117.5},  // shadow_ray, of effects
+    {WorkId(69),    86.7},  // area_place, of effects
     {WorkId(70),    67.0},  // light_sample, of effects
     {WorkId(71),   153.2},  // highlight, of effects
-    {WorkId(72),   184.4},  // occlusion_ray, of effects
+    {WorkId(72),   184.5},  // occlusion_ray, of effects
     {WorkId(73),   159.9},  // mirror_ray, of effects
     {WorkId(74),   159.4},  // refracted_ray, of effects
     {WorkId(75),   386.3},  // environment_lookup, of effects
-    {WorkId(76),    70.1},  // color_added, of effects
+    {WorkId(76),    69.4},  // color_added, of effects
     {WorkId(77),   193.1},  // color_group, of effects
     {WorkId(81),   387.8},  // packet_start
     {WorkId(82),    23.0},  // pass_slope
@@ -123,6 +123,6 @@ inline constexpr double kCommandInstructions = 254.4;
 /// A wait: from where core counts it to the next kind of work, without the ends of commands.
 inline constexpr double kWaitInstructions = 91.2;
 /// A claim: from asking for a tile to the tile's first work.
-inline constexpr double kClaimInstructions = 61.8;
+inline constexpr double kClaimInstructions = 68.4;
 
 }  // namespace gridiron::sim

@@ -84,12 +84,12 @@ struct ReplayOptions {
 /// ties by core. The n-th grant hands out trace.tiles[n], or, if trace.is_middle_out, that of middle_out(n); with
 /// options.core_of_tile a core gets the next of its own tiles instead, in the order of the trace. A core's commands are
 /// served one after another in the order of issue. Each line leaves the core when the command has been issued,
-/// core_line_interval_cycles have passed since the line before it, and fewer than lines_in_flight lines are under way: a
-/// line is until it arrives. The channel serves lines of all cores, gets and puts alike, by the time they left, ties by core. A line arrives latency_cycles after its turn on the
-/// channel has ended; where these are several numbers, line_draw() / 2^64 falls into the share of one of them, in their
-/// order. A command is done when all its lines have arrived; commands need not be done in the order of issue. A wait
-/// ends when all commands of its tags are done. The queue is full until the command queue_depth before the new one is
-/// done.
+/// core_line_interval_cycles have passed since the line before it, and fewer than lines_in_flight lines are under way:
+/// a line is until it arrives. The channel serves lines of all cores, gets and puts alike, by the time they left, ties
+/// by core. A line arrives latency_cycles after its turn on the channel has ended; where these are several numbers,
+/// line_draw() / 2^64 falls into the share of one of them, in their order. A command is done when all its lines have
+/// arrived; commands need not be done in the order of issue. A wait ends when all commands of its tags are done. The
+/// queue is full until the command queue_depth before the new one is done.
 ///
 /// First come, first served is fair: cores that stream equally get equal shares, and a line waits for at most
 /// lines_in_flight lines of each other core.

@@ -45,7 +45,7 @@ TEST(Configurations, FetchSoManyChildrenForEffects) {
   EXPECT_EQ(fetch("reference"), 2u);
   EXPECT_EQ(fetch("deep"), 4u);
   EXPECT_EQ(fetch("grid"), 2u);
-  EXPECT_EQ(fetch("best"), 3u);
+  EXPECT_EQ(fetch("best"), 2u);
 }
 
 TEST(Configurations, EachFitsAStoreWithEffects) {

@@ -230,8 +230,8 @@ class TreeSource {
   [[nodiscard]] static std::uint32_t first_byte_of(std::uint64_t address) {
     return static_cast<std::uint32_t>(address) % kPortableCongruenceBytes;
   }
-  // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Where slots are more than
-  // tags, these go round, so that a wait for one child hardly ever is for another that was asked for later.
+  // Waits for nodes count as those for cell blocks do, waits for leaves as those for triangles. Where slots are more
+  // than tags, these go round, so that a wait for one child hardly ever is for another that was asked for later.
   static constexpr std::uint32_t kTags = kMacroTagCount;
   static_assert(kTags <= kTriangleTagCount);
   static constexpr bool kHasTagOfEachSlot = Cache::kSlots <= kTags;
