@@ -20,7 +20,7 @@ namespace gridiron::sim {
 struct ViewFrame {
   FrameHead head;                    ///< of EngineId::kTree, as make_frame_record() filled it
   std::span<const std::byte> image;  ///< the scene image that it names
-  StoreSize store = StoreSize::k256KB;
+  StoreSize store = StoreSize::k256KB;  ///< of the cores
 };
 
 /// @returns whether there is a bound for such frames: eye rays of the whole tree's engine with 4 lanes, of triangles by
