@@ -56,16 +56,15 @@
 #endif
 
 #if LEVEL == LISTS
-// Slots for nodes and leaves, DEPTH of them, or as many as the code's. There are fewer tags, so slots share them.
+// Slots for nodes and leaves, DEPTH of them, or as many as the code's. There are fewer tags, which go round; OWN_TAGS:
+// as many.
 #ifndef SLOTS
 #define SLOTS DEPTH
 #endif
 #ifdef TRACE
-#define NODE_TAGS K_MACRO_TAG_COUNT
-#define LEAF_TAGS K_MACRO_TAG_COUNT
+#define CHILD_TAGS K_MACRO_TAG_COUNT
 #else
-#define NODE_TAGS ((SLOTS + 1) / 2)
-#define LEAF_TAGS ((SLOTS + 1) / 2)
+#define CHILD_TAGS ((SLOTS + 1) / 2)
 #endif
 #define SETUP_BUFFER SLOTS
 #define BUFFERS (SLOTS + 1)
@@ -605,20 +604,71 @@ inline run_tiles() {
 mtype = { kNothing, kNode, kLeaf };
 mtype has[SLOTS];
 bool is_pending[SLOTS];
-bit serial[SLOTS];  // of what a slot has, or will have
-#define SLOT_TAG(i) (has[i] == kLeaf -> K_FIRST_TRIANGLE_TAG + (i) * LEAF_TAGS / SLOTS : K_FIRST_MACRO_TAG + (i) * NODE_TAGS / SLOTS)
+bit serial[SLOTS];    // of what a slot has, or will have
+byte tag_at[SLOTS];   // of its transfer
+byte fetched;         // children, as far as tags tell them apart
+#ifdef TRACE
+byte next;
+#endif
 
 // arrive.
 inline arrive(i) {
 #if BREAK != NO_WAIT
-  wait(SLOT_TAG(i));
+  wait(tag_at[i]);
 #endif
   is_pending[i] = false
 }
 
+#ifdef TRACE
+// Slots that are not pending differ in no call, nor do those with one tag. A slot that makes room while it is pending
+// calls as one that is taken before.
+inline choose_slot(i) {
+  d_step {
+    i = 0;
+    do
+    :: i < SLOTS && is_pending[next] -> next = (next + 1) % SLOTS; i++
+    :: else -> break
+    od
+  }
+  i < SLOTS;
+  i = next;
+  next = (next + 1) % SLOTS
+}
+// Which is used of those at hand: one that the next call may be a wait for; any leaf, for a tie.
+inline choose_child(i) {
+  if
+  :: d_step {
+       c_code { now.called = now.position < kTraceCount ? kTrace[now.position] : 255; }
+       i = 0;
+       do
+       :: i < SLOTS && !(is_pending[i] && tag_at[i] == called) -> i++
+       :: else -> break
+       od
+     }
+  :: d_step {
+       i = 0;
+       do
+       :: i < SLOTS && !(!is_pending[i] && has[i] == kLeaf) -> i++
+       :: else -> break
+       od
+     }
+  fi;
+  i < SLOTS
+}
+#else
+#define choose_slot(i) select(i : 0 .. SLOTS - 1)
+#define choose_child(i) select(i : 0 .. SLOTS - 1)
+#endif
+
+#ifdef OWN_TAGS
+#define TAG_NUMBER(i) (i)
+#else
+#define TAG_NUMBER(i) fetched
+#endif
+
 // start.
 inline start_child(i) {
-  select(i : 0 .. SLOTS - 1);
+  choose_slot(i);
   if
 #if BREAK != EARLY_GET
   :: is_pending[i] -> arrive(i)
@@ -627,10 +677,14 @@ inline start_child(i) {
   :: true
 #endif
   fi;
-  if :: has[i] = kNode :: has[i] = kLeaf fi;
+  if
+  :: has[i] = kNode; tag_at[i] = K_FIRST_MACRO_TAG + TAG_NUMBER(i)
+  :: has[i] = kLeaf; tag_at[i] = K_FIRST_TRIANGLE_TAG + TAG_NUMBER(i)
+  fi;
+  fetched = (fetched + 1) % CHILD_TAGS;
   serial[i] = 1 - serial[i];
   is_pending[i] = true;
-  get(i, SLOT_TAG(i), 1 + serial[i], PIECES)
+  get(i, tag_at[i], 1 + serial[i], PIECES)
 }
 
 inline run_lists() {
@@ -638,13 +692,16 @@ inline run_lists() {
     for (t_ : 0 .. SLOTS - 1) { has[t_] = kNothing }
     t_ = 0
   }
+#ifdef TRACE
+  select(fetched : 0 .. CHILD_TAGS - 1);  // what other stages have fetched
+#endif
   do
-  :: true -> DECIDED(ahead); start_child(slot)  // ahead: a child that is not at hand
+  :: true -> DECIDED(ahead); start_child(slot); slot = 0  // ahead: a child that is not at hand
   :: true ->                                    // node, leaf
     DECIDED(take);
     if
     :: true -> start_child(slot)
-    :: true -> select(slot : 0 .. SLOTS - 1)
+    :: true -> choose_child(slot)
     fi;
     if
     :: has[slot] == kNothing
@@ -656,7 +713,8 @@ inline run_lists() {
       :: true -> break
       od;
       in_use[slot] = false
-    fi
+    fi;
+    slot = 0
   :: true -> break
   od;
   slot = 0;  // finish
