@@ -129,6 +129,23 @@ Failure put_sends_the_bytes_and_no_others(B& bench) {
   return nullptr;
 }
 
+/// At any place, and after a put too. Passes where nothing is read in place.
+template <Bench B>
+Failure what_is_read_in_place_is_main_memory(B& bench) {
+  if constexpr (InPlaceReader<typename B::PlatformType>) {
+    fill_main(bench);
+    fill_local(bench, kUntouched);
+    GRIDIRON_CONTRACT_REQUIRE(put_now(bench, 0, 8192, 64, Tag{2}));
+    constexpr std::uint32_t kPlaces[] = {0, 1, 4096 - 16, 8192, kMainBytes - 64};
+    for (const std::uint32_t from : kPlaces) {
+      const std::byte* const there = bench.platform().in_place(bench.main().offset_by(from));
+      if (there == nullptr) continue;
+      for (std::uint32_t i = 0; i < 64; ++i) GRIDIRON_CONTRACT_REQUIRE(there[i] == bench.peek(from + i));
+    }
+  }
+  return nullptr;
+}
+
 /// The bytes stored right before the call are sent, and after the wait the core may change the source again.
 template <Bench B>
 Failure put_sends_what_was_stored_before_it(B& bench) {
@@ -386,6 +403,7 @@ void for_each_check(Run&& run) {
   run("limits_allow_the_portable_subset", limits_allow_the_portable_subset<B>, false);
   run("get_brings_the_bytes_and_no_others", get_brings_the_bytes_and_no_others<B>, false);
   run("put_sends_the_bytes_and_no_others", put_sends_the_bytes_and_no_others<B>, false);
+  run("what_is_read_in_place_is_main_memory", what_is_read_in_place_is_main_memory<B>, false);
   run("put_sends_what_was_stored_before_it", put_sends_what_was_stored_before_it<B>, false);
   run("a_get_after_a_waited_put_sees_it", a_get_after_a_waited_put_sees_it<B>, false);
   run("transfers_that_share_a_tag_end_together", transfers_that_share_a_tag_end_together<B>, false);
