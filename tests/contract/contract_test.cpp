@@ -131,7 +131,7 @@ class BenchNames {
   }
 };
 TYPED_TEST_SUITE(Contract, Benches, BenchNames);
-static_assert(InPlaceReader<PlainBench<1>::PlatformType> && !InPlaceReader<SimBench<Completion::kEarly, 1>::PlatformType>);
+static_assert(InPlaceReader<sim::PlainCore> && !InPlaceReader<sim::SimCore>);
 
 TYPED_TEST(Contract, Holds) {
   static_assert(Bench<TypeParam>);
