@@ -45,7 +45,9 @@ std::uint32_t short_node() {
   return node_that([](const TreeNode& node) { return node.child_count < kTreeWidth; });
 }
 std::uint32_t leafy_node() {
-  return node_that([](const TreeNode& node) { return node.children[0].is_leaf() && node.children[1].is_leaf(); });
+  return node_that([](const TreeNode& node) {
+    return node.children[0].is_leaf() && node.children[1].is_leaf() && node.children[1].count() > 1;
+  });
 }
 
 TreeChild moved(TreeChild leaf, std::int32_t by) {
@@ -168,6 +170,8 @@ const Damage kDamages[] = {
                 r.children[1] = TreeChild::leaf(kMaxTreeTriangles - 1, 1)),
     NODE_DAMAGE("a_leaf_that_overlaps", leafy_node(), children, r.children[1] = moved(r.children[1], -1)),
     NODE_DAMAGE("a_leaf_with_a_gap_before_it", leafy_node(), children, r.children[1] = moved(r.children[1], 1)),
+    NODE_DAMAGE("a_leaf_without_its_first_record", leafy_node(), children,
+                r.children[1] = TreeChild::leaf(r.children[1].first() + 1, r.children[1].count() - 1)),
     NODE_DAMAGE("leaves_out_of_order", leafy_node(), children, exchange(r, 0, 1)),
     NODE_DAMAGE("a_child_that_is_not_there", short_node(), children, r.children[15] = TreeChild::leaf(0, 1)),
     NODE_DAMAGE("order_with_one_twice", 0, order, r.order = r.order >> 4 << 4 | (r.order >> 4 & 15)),
