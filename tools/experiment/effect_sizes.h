@@ -19,27 +19,27 @@ struct EffectSize {
 };
 
 inline constexpr std::array kEffectSizes{
-    EffectSize{0x000, 46424, 118272, 0, 0, false},  // none
-    EffectSize{0x200, 52856, 139648, 24022, 18048, true},  // scene shading
-    EffectSize{0x201, 84238, 139648, 25466, 18048, true},  // + point shadows
-    EffectSize{0x202, 84978, 139648, 26246, 18048, true},  // + area lights
-    EffectSize{0x204, 85242, 157952, 25712, 20224, true},  // + reflection
-    EffectSize{0x208, 86340, 157952, 26840, 20224, true},  // + refraction
-    EffectSize{0x210, 84988, 139648, 26324, 18048, true},  // + ambient occlusion
-    EffectSize{0x220, 54866, 139648, 26034, 18048, true},  // + environment
-    EffectSize{0x240, 54236, 139648, 25438, 18048, true},  // + smooth normals
-    EffectSize{0x280, 53598, 139648, 24764, 18048, true},  // + highlights
-    EffectSize{0x300, 53390, 139648, 24344, 18048, true},  // + multisampling
-    EffectSize{0x3fe, 95984, 157952, 35730, 20224, true},  // all but point shadows
-    EffectSize{0x3fd, 95168, 157952, 34914, 20224, true},  // all but area lights
-    EffectSize{0x3fb, 95984, 157952, 35730, 20224, true},  // all but reflection
-    EffectSize{0x3f7, 94848, 157952, 34594, 20224, true},  // all but refraction
-    EffectSize{0x3ef, 93624, 157952, 33494, 20224, true},  // all but ambient occlusion
-    EffectSize{0x3df, 93910, 157952, 33688, 20224, true},  // all but environment
-    EffectSize{0x3bf, 94570, 157952, 34290, 20224, true},  // all but smooth normals
-    EffectSize{0x37f, 95244, 157952, 34990, 20224, true},  // all but highlights
-    EffectSize{0x2ff, 95434, 157952, 35402, 20224, true},  // all but multisampling
-    EffectSize{0x3ff, 95976, 157952, 35722, 20224, true},  // all
+    EffectSize{0x000, 46426, 118272, 0, 0, false},  // none
+    EffectSize{0x200, 52866, 139648, 23820, 18048, true},  // scene shading
+    EffectSize{0x201, 84078, 139648, 25122, 18048, true},  // + point shadows
+    EffectSize{0x202, 84818, 139648, 25902, 18048, true},  // + area lights
+    EffectSize{0x204, 85054, 157952, 25688, 20224, true},  // + reflection
+    EffectSize{0x208, 86152, 157952, 26816, 20224, true},  // + refraction
+    EffectSize{0x210, 84800, 139648, 25966, 18048, true},  // + ambient occlusion
+    EffectSize{0x220, 54876, 139648, 25832, 18048, true},  // + environment
+    EffectSize{0x240, 54246, 139648, 25236, 18048, true},  // + smooth normals
+    EffectSize{0x280, 53608, 139648, 24562, 18048, true},  // + highlights
+    EffectSize{0x300, 53400, 139648, 24142, 18048, true},  // + multisampling
+    EffectSize{0x3fe, 95566, 157952, 35250, 20224, true},  // all but point shadows
+    EffectSize{0x3fd, 94750, 157952, 34434, 20224, true},  // all but area lights
+    EffectSize{0x3fb, 95566, 157952, 35250, 20224, true},  // all but reflection
+    EffectSize{0x3f7, 94430, 157952, 34114, 20224, true},  // all but refraction
+    EffectSize{0x3ef, 93342, 157952, 33160, 20224, true},  // all but ambient occlusion
+    EffectSize{0x3df, 93492, 157952, 33208, 20224, true},  // all but environment
+    EffectSize{0x3bf, 94152, 157952, 33810, 20224, true},  // all but smooth normals
+    EffectSize{0x37f, 94826, 157952, 34510, 20224, true},  // all but highlights
+    EffectSize{0x2ff, 95014, 157952, 35096, 20224, true},  // all but multisampling
+    EffectSize{0x3ff, 95558, 157952, 35242, 20224, true},  // all
 };
 
 }  // namespace gridiron::experiment
