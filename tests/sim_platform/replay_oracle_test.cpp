@@ -255,7 +255,7 @@ MachineProfile random_machine(std::mt19937& random) {
 }
 
 TEST(ReplayOracle, FortyMachinesAsASecondModelHasThem) {
-  // A seed whose frames do not hang on which of two cores is earlier by a thousandth of a cycle; other seeds have one.
+  // Of five seeds, three have a frame that hangs on which of two cores is earlier by a thousandth of a cycle; not this.
   std::mt19937 random(22);
   for (int setting = 0; setting < 40; ++setting) {
     const MachineProfile machine = random_machine(random);

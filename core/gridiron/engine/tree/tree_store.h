@@ -39,7 +39,7 @@ struct TreeCache {
   };
   Slot slots[Slots];
   alignas(16) std::uint32_t keys[Slots];  ///< TreeChild::bits of what a slot has, or will have
-  std::uint8_t tags[Slots];               ///< of their transfers
+  std::uint8_t tags[Slots];               ///< of their transfers; unused where each slot has one
   std::uint32_t turns[kSets];             ///< of each set: the slot that makes room next
 };
 
