@@ -87,7 +87,8 @@ void gridiron_master() {
     failures += report.failures;
   }
   print("contract: ", checks, " checks, ", failures, " failures\n");
-  exit_run(static_cast<std::uint32_t>(failures == 0 ? RunExit::kDone : RunExit::kFrameFailed));
+  const bool passed = failures == 0 && checks == contract::check_count<BoardBench>() * kWorkerCount;
+  exit_run(static_cast<std::uint32_t>(passed ? RunExit::kDone : RunExit::kFrameFailed));
 }
 
 void gridiron_worker(std::uint64_t core_index) {

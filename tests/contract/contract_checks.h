@@ -399,7 +399,7 @@ Failure overlapping_pending_transfers_are_refused(B& bench) {
 
 /// Calls run(name, check, is_rule) for every check; `check` takes a bench and returns a Failure.
 template <Bench B, class Run>
-void for_each_check(Run&& run) {
+constexpr void for_each_check(Run&& run) {
   run("limits_allow_the_portable_subset", limits_allow_the_portable_subset<B>, false);
   run("get_brings_the_bytes_and_no_others", get_brings_the_bytes_and_no_others<B>, false);
   run("put_sends_the_bytes_and_no_others", put_sends_the_bytes_and_no_others<B>, false);
@@ -421,6 +421,14 @@ void for_each_check(Run&& run) {
   run("a_tag_out_of_range_is_refused", a_tag_out_of_range_is_refused<B>, true);
   run("one_command_more_than_the_queue_is_refused", one_command_more_than_the_queue_is_refused<B>, true);
   run("overlapping_pending_transfers_are_refused", overlapping_pending_transfers_are_refused<B>, true);
+}
+
+/// How often for_each_check calls run: a report of fewer checks is one of a core that did not run them all.
+template <Bench B>
+consteval std::uint32_t check_count() {
+  std::uint32_t count = 0;
+  for_each_check<B>([&](const char*, auto, bool) { ++count; });
+  return count;
 }
 
 }  // namespace gridiron::contract

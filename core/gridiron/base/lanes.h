@@ -280,7 +280,8 @@ struct Lanes {
 #endif
       false;
   /// a b + c with two roundings, or with one where that is one instruction: for values with a bound of their error,
-  /// never for what must have the same bits everywhere.
+  /// never for what must have the same bits everywhere. How many pairs a filter leaves to exact tests can depend on it;
+  /// GRIDIRON_TWO_ROUNDINGS makes it the same on Arm as elsewhere.
   [[nodiscard]] static GRIDIRON_INLINE Float bounded_sum(Float a, Float b, Float c) {
 #if defined(__AVX512F__)
     if constexpr (W == 16) return Float(FloatVector(_mm512_fmadd_ps(__m512(a.v), __m512(b.v), __m512(c.v))));
@@ -288,7 +289,7 @@ struct Lanes {
 #if defined(__FMA__)
     if constexpr (W == 8) return Float(FloatVector(_mm256_fmadd_ps(__m256(a.v), __m256(b.v), __m256(c.v))));
 #endif
-#if defined(__ARM_NEON) && defined(__aarch64__)
+#if defined(__ARM_NEON) && defined(__aarch64__) && !defined(GRIDIRON_TWO_ROUNDINGS)
     if constexpr (W == 4) return Float(FloatVector(vfmaq_f32(float32x4_t(c.v), float32x4_t(a.v), float32x4_t(b.v))));
 #endif
     return a * b + c;
