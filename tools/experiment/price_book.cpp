@@ -56,7 +56,7 @@ class Fields {
     Table table{std::move(name), {}, {}};
     for (const Field& field : fields_) table.columns.push_back(field.column);
     for (const Price& price : list_.prices()) {
-      if (!keep(price)) continue;
+      if (!price.is_possible() || !keep(price)) continue;
       std::vector<Cell> row;
       for (const Field& field : fields_) row.push_back(field.cell(price));
       table.add(std::move(row));
@@ -81,6 +81,18 @@ constexpr NamedCount kHitCounts[] = {{"rays", &HitCounts::rays},
                                      {"seen_through", &HitCounts::seen_through}};
 constexpr std::span<const NamedCount> kWrongCounts = std::span(kHitCounts).subspan(2);
 
+// Nothing where there are none.
+using HitsOf = const HitCounts* (*)(const Price&);
+const HitCounts* of_pixels(const Price& price) {
+  return price.errors ? &price.errors->hits : nullptr;
+}
+const HitCounts* at_edges(const Price& price) {
+  return price.at_edges ? &*price.at_edges : nullptr;
+}
+double edges_per_million(const Price& price, std::uint64_t HitCounts::*count) {
+  return price.at_edges ? price.at_edges->per_million((*price.at_edges).*count) : std::nan("");
+}
+
 double million_cycles(const RunResult& run) {
   return run.timing.frame_cycles / 1e6;
 }
@@ -102,34 +114,41 @@ Table all_prices(const PriceList& list) {
   add_time("", &PriceList::frame);
   add_time("with_distances_", &PriceList::with_distances);
   add_time("starved_", &PriceList::on_starved);
+  const auto add_of_grid = [&](const char* key, std::uint64_t FrameFacts::*bytes) {
+    fields.add({key, ""}, [&list, bytes](const Price& price) -> Cell {
+      const FrameFacts& facts = list.frame(price).facts;
+      return facts.grid ? Cell{facts.*bytes} : Cell{};
+    });
+  };
   const auto add_bytes = [&fields](const char* key, RunOf run, std::uint64_t (*bytes)(const RunResult&)) {
     fields.add_run({key, ""}, run, bytes);
   };
   add_bytes("dma_bytes", &PriceList::frame, [](const RunResult& run) { return run.moved_bytes(); });
   add_bytes("dma_in_bytes", &PriceList::frame, [](const RunResult& run) { return run.bytes_in(); });
-  add_bytes("dma_triangle_bytes", &PriceList::frame,
-            [](const RunResult& run) { return run.facts.fetched_triangle_bytes; });
+  add_of_grid("dma_triangle_bytes", &FrameFacts::fetched_triangle_bytes);
   add_bytes("with_distances_dma_bytes", &PriceList::with_distances,
             [](const RunResult& run) { return run.moved_bytes(); });
   add_bytes("local_store_bytes", &PriceList::frame, [](const RunResult& run) { return run.facts.local_store_bytes; });
   add_bytes("main_memory_bytes", &PriceList::frame, [](const RunResult& run) { return run.facts.main_memory_bytes; });
   add_bytes("scene_bytes", &PriceList::frame, [](const RunResult& run) { return run.facts.scene_bytes; });
-  add_bytes("triangle_bytes", &PriceList::frame, [](const RunResult& run) { return run.facts.triangle_bytes; });
+  add_of_grid("triangle_bytes", &FrameFacts::triangle_bytes);
 
-  const auto add_hits = [&fields](const std::string& prefix, const HitCounts& (*counts)(const Price&)) {
+  const auto add_hits = [&fields](const std::string& prefix, HitsOf hits_of) {
     for (const auto& [name, count] : kHitCounts) {
-      fields.add({prefix + name, ""}, [counts, count = count](const Price& price) -> Cell {
-        return price.errors ? Cell{counts(price).*count} : Cell{};
+      fields.add({prefix + name, ""}, [hits_of, count = count](const Price& price) -> Cell {
+        const HitCounts* const hits = hits_of(price);
+        return hits != nullptr ? Cell{hits->*count} : Cell{};
       });
     }
     for (const auto& [name, count] : kWrongCounts) {
-      fields.add({prefix + name + "_per_million", ""}, [counts, count = count](const Price& price) -> Cell {
-        return price.errors ? Cell{counts(price).per_million(counts(price).*count)} : Cell{};
+      fields.add({prefix + name + "_per_million", ""}, [hits_of, count = count](const Price& price) -> Cell {
+        const HitCounts* const hits = hits_of(price);
+        return hits != nullptr ? Cell{hits->per_million(hits->*count)} : Cell{};
       });
     }
   };
-  add_hits("", [](const Price& price) -> const HitCounts& { return price.errors->hits; });
-  add_hits("edge_", [](const Price& price) -> const HitCounts& { return price.at_edges; });
+  add_hits("", of_pixels);
+  add_hits("edge_", at_edges);
   fields.add_error({"wrong_triangles_at_true_distance", ""},
                    [](const Comparison& found) { return found.wrong_at_true_depth; });
   const auto add_spread = [&fields](const std::string& key, Spread Comparison::*spread) {
@@ -179,6 +198,7 @@ std::string histogram_svg(const PriceList& list, std::size_t view, std::size_t c
   chart.parts = {"frame", "frame with distances"};
   for (std::size_t profile = 0; profile < list.profiles().size(); ++profile) {
     const Price& price = list.price(view, configuration, profile);
+    if (!price.is_possible()) continue;
     HistogramChart::Row row{list.profiles()[profile].key, {}, {}};
     const Comparison errors = price.errors.value_or(Comparison{});
     for (const std::uint64_t count : errors.ulp_histogram) row.counts.push_back(static_cast<double>(count));
@@ -205,7 +225,9 @@ std::vector<Front> make_fronts() {
   return {{"pixels", "wrong pixels of a million", "million cycles a frame", &PriceList::frame,
            [](const Price& price) { return price.errors->hits.per_million(price.errors->hits.wrong_rays()); }},
           {"edges", "leaks of a million rays at edges", "million cycles a frame", &PriceList::frame,
-           [](const Price& price) { return price.at_edges.per_million(price.at_edges.leaks()); }},
+           [](const Price& price) {
+             return price.at_edges ? price.at_edges->per_million(price.at_edges->leaks()) : std::nan("");
+           }},
           {"t", "error of t in 99 of 100 pixels, ulp", "million cycles a frame with distances",
            &PriceList::with_distances, [](const Price& price) { return price.errors->ulps.percentile_99; }}};
 }
@@ -261,12 +283,11 @@ std::string front_svg(const PriceList& list, const Front& front, const std::stri
   chart.x_title = front.time;
   chart.y_title = front.error;
   for (const Profile& profile : list.profiles()) chart.colors.push_back(profile.key);
-  chart.filled = kPricedConfigurations[0];
-  chart.hollow = kPricedConfigurations[1];
+  chart.styles.assign(std::begin(kPricedConfigurations), std::end(kPricedConfigurations));
   chart.ring = "Pareto front";
   for (const FrontPoint& point : points) {
     chart.points.push_back(
-        {point.point.x, point.point.y, name_of(list, point), point.profile, point.configuration != 0, point.on_front});
+        {point.point.x, point.point.y, name_of(list, point), point.profile, point.configuration, point.on_front});
   }
   return scatter_chart_svg(chart);
 }
@@ -316,7 +337,10 @@ Table view_costs(const PriceList& list, std::size_t view) {
   fields.add_run({"", "with t"}, &PriceList::with_distances, million_cycles);
   fields.add_run({"", "starved"}, &PriceList::on_starved, million_cycles);
   add_bytes("DMA MB", [](const RunResult& run) { return static_cast<double>(run.moved_bytes()); });
-  add_bytes("triangle MB", [](const RunResult& run) { return static_cast<double>(run.facts.fetched_triangle_bytes); });
+  fields.add({"", "triangle MB", 1}, [&list](const Price& price) -> Cell {
+    const FrameFacts& facts = list.frame(price).facts;
+    return facts.grid ? Cell{static_cast<double>(facts.fetched_triangle_bytes) / kMegabyte} : Cell{};
+  });
   add_bytes("main MB", [](const RunResult& run) { return static_cast<double>(run.facts.main_memory_bytes); });
   fields.add_run({"", "local KB", 0}, &PriceList::frame,
                  [](const RunResult& run) { return static_cast<double>(run.facts.local_store_bytes) / 1024; });
@@ -326,10 +350,11 @@ Table view_costs(const PriceList& list, std::size_t view) {
 Table view_errors(const PriceList& list, std::size_t view, bool split_leaks) {
   Fields fields(list);
   fields.add_names(false);
-  const auto add_shares = [&fields, split_leaks](const std::string& where, const HitCounts& (*counts)(const Price&)) {
+  const auto add_shares = [&fields, split_leaks](const std::string& where, HitsOf hits_of) {
     const auto add = [&](const std::string& title, std::uint64_t (*count)(const HitCounts&), int decimals = 0) {
-      fields.add({"", where + title, decimals}, [counts, count](const Price& price) -> Cell {
-        return price.errors ? Cell{counts(price).per_million(count(counts(price)))} : Cell{};
+      fields.add({"", where + title, decimals}, [hits_of, count](const Price& price) -> Cell {
+        const HitCounts* const hits = hits_of(price);
+        return hits != nullptr ? Cell{hits->per_million(count(*hits))} : Cell{};
       });
     };
     if (split_leaks) {
@@ -342,8 +367,8 @@ Table view_errors(const PriceList& list, std::size_t view, bool split_leaks) {
     add(
         "wrong", [](const HitCounts& hits) { return hits.wrong_triangles; }, where.empty() ? 1 : 0);
   };
-  add_shares("edge ", [](const Price& price) -> const HitCounts& { return price.at_edges; });
-  add_shares("", [](const Price& price) -> const HitCounts& { return price.errors->hits; });
+  add_shares("edge ", at_edges);
+  add_shares("", of_pixels);
   fields.add_error({"", "ulp 50%", 0}, [](const Comparison& found) { return found.ulps.median; });
   fields.add_error({"", "99%", 0}, [](const Comparison& found) { return found.ulps.percentile_99; });
   fields.add_error({"", "max", 0}, [](const Comparison& found) { return found.ulps.greatest; });
@@ -369,13 +394,13 @@ void write_overview(const PriceList& list, Book& book) {
   };
   const Worst worsts[] = {
       {{"most_edge_holes_per_million", "edges: holes", 0},
-       [](const Price& price) { return price.at_edges.per_million(price.at_edges.holes); }},
+       [](const Price& price) { return edges_per_million(price, &HitCounts::holes); }},
       {{"most_edge_seen_through_per_million", "through", 0},
-       [](const Price& price) { return price.at_edges.per_million(price.at_edges.seen_through); }},
+       [](const Price& price) { return edges_per_million(price, &HitCounts::seen_through); }},
       {{"most_edge_false_hits_per_million", "false", 0},
-       [](const Price& price) { return price.at_edges.per_million(price.at_edges.false_hits); }},
+       [](const Price& price) { return edges_per_million(price, &HitCounts::false_hits); }},
       {{"most_edge_wrong_triangles_per_million", "wrong", 0},
-       [](const Price& price) { return price.at_edges.per_million(price.at_edges.wrong_triangles); }},
+       [](const Price& price) { return edges_per_million(price, &HitCounts::wrong_triangles); }},
       {{"most_holes_per_million", "pixels: holes", 0},
        [](const Price& price) { return price.errors->hits.per_million(price.errors->hits.holes); }},
       {{"most_seen_through_per_million", "through", 0},
@@ -397,6 +422,7 @@ void write_overview(const PriceList& list, Book& book) {
   for (const Worst& worst : worsts) table.columns.push_back(worst.column);
   for (std::size_t configuration = 0; configuration < std::size(kPricedConfigurations); ++configuration) {
     for (std::size_t profile = 0; profile < list.profiles().size(); ++profile) {
+      if (!list.price(0, configuration, profile).is_possible()) continue;
       std::vector<Cell> row = {kPricedConfigurations[configuration], list.profiles()[profile].key};
       for (const Time& time : times) row.emplace_back(mean_mcycles(list, time.run, configuration, profile));
       for (const Worst& worst : worsts) {
@@ -461,7 +487,7 @@ void write_fronts(const PriceList& list, Book& book) {
                            Column("error_value", "error", 1), Column("on_front", "on the front"));
   book.section("fronts", "Error against time");
   book.paragraph(
-      "Who is on a Pareto front is not beaten: no other profile, in either configuration, is as fast and as accurate "
+      "Who is on a Pareto front is not beaten: no other profile, in any configuration, is as fast and as accurate "
       "and better in one of them. Three errors are shown: wrong pixels (a hole, a false hit or another triangle) and "
       "leaks of rays aimed at edges (a hole, or something farther away seen through it), both against the time of a "
       "frame that gives a picture alone, and the error of t against that of a frame that gives distances too. Times "
@@ -472,6 +498,7 @@ void write_fronts(const PriceList& list, Book& book) {
                 "All views: " + front.error + ", against " + front.time + ". " + front_words(list, over_all));
     const auto add_rows = [&](const std::string& view, const std::vector<FrontPoint>& points) {
       for (const FrontPoint& point : points) {
+        if (!std::isfinite(point.point.x)) continue;
         table.add({view, front.error, kPricedConfigurations[point.configuration], list.profiles()[point.profile].key,
                    point.point.x, point.point.y, point.on_front ? "yes" : "no"});
       }

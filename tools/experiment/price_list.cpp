@@ -111,7 +111,9 @@ void PriceList::compare_view(std::size_t view, const std::function<void()>& step
     const std::optional<Answers> answers = truth ? answers_of(price) : std::nullopt;
     if (answers) {
       price.errors = compare_answers(*truth, *answers);
-      price.at_edges = count_hits(truth_at_edges, answers_at(points, price));
+      if (price.variant.configuration.has_grid()) {
+        price.at_edges = count_hits(truth_at_edges, answers_at(points, price));
+      }
       const std::uint64_t hash = tool::image_hash(answers->color);
       price.same_picture = hash == frame(price).facts.picture_hash && hash == with_distances(price).facts.picture_hash;
     }

@@ -29,8 +29,9 @@ struct Profile {
 /// @returns all accuracy profiles, the least accurate first; those that change the geometry last.
 [[nodiscard]] std::vector<Profile> make_profiles();
 
-/// Names of the configurations that each profile is rendered with.
-inline constexpr const char* kPricedConfigurations[] = {"grid", "reference"};
+/// Names of the configurations that each profile is rendered with; the first gives the truth. Profile paper has no
+/// triangles for the last.
+inline constexpr const char* kPricedConfigurations[] = {"grid", "reference", "best"};
 
 /// One profile in one configuration on one view.
 struct Price {
@@ -38,8 +39,15 @@ struct Price {
   GridVariant variant;
   Plan::RunId frame, with_distances, starved;  ///< the last: `frame` on the starved machine
   std::optional<Comparison> errors{};          ///< nothing where the frame or its truth cannot be rendered
-  HitCounts at_edges{};                        ///< of rays aimed at edges and vertices, about as many as pixels
-  bool same_picture = false;                   ///< with distances and without
+  /// Of rays aimed at edges and vertices, about as many as pixels. Nothing also through the tree: such rays lie closer
+  /// together than its tiles have filters for, so that every pixel is decided exactly, triangle by triangle.
+  std::optional<HitCounts> at_edges{};
+  bool same_picture = false;  ///< with distances and without
+
+  /// Whether there are triangles for the profile. If not, its runs fail, and tables have no row.
+  [[nodiscard]] bool is_possible() const {
+    return variant.configuration.has_grid() || variant.accuracy != Accuracy::kPaper;
+  }
 };
 
 /// The runs to time, and their results.

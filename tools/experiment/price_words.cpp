@@ -55,7 +55,8 @@ std::vector<Metric> price_metrics() {
   const auto memory = [](const RunResult& run) { return static_cast<double>(run.facts.main_memory_bytes); };
   const auto at_edges = [](std::string words, std::uint64_t HitCounts::*count) {
     return Metric{std::move(words), false, 0, [count](const PriceList&, const Price& price) {
-                    return price.errors ? price.at_edges.per_million(price.at_edges.*count) : std::nan("");
+                    const std::optional<HitCounts>& hits = price.at_edges;
+                    return hits ? hits->per_million((*hits).*count) : std::nan("");
                   }};
   };
   return {

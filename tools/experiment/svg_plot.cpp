@@ -93,7 +93,7 @@ void draw_y_axis(Drawing& drawing, const PlotArea& area, const Axis& y, std::str
 }
 
 // Names and colours in rows below the plot.
-enum class Mark : std::uint8_t { kLine, kDashes, kDot, kHollowDot, kRing };
+enum class Mark : std::uint8_t { kLine, kDashes, kDot, kHollowDot, kOutlinedDot, kRing };
 
 struct LegendEntry {
   std::string name;
@@ -103,9 +103,13 @@ struct LegendEntry {
 
 constexpr double kRingRadius = 9;
 
-std::string dot_style(std::string_view color, bool hollow) {
-  return hollow ? "fill=\"#ffffff\" stroke=\"" + std::string(color) + "\" stroke-width=\"2\""
-                : "fill=\"" + std::string(color) + "\"";
+// By the index of ScatterChart's styles.
+constexpr Mark kDotMarks[] = {Mark::kDot, Mark::kHollowDot, Mark::kOutlinedDot};
+
+std::string dot_style(std::string_view color, Mark mark) {
+  const std::string own(color);
+  if (mark == Mark::kHollowDot) return "fill=\"#ffffff\" stroke=\"" + own + "\" stroke-width=\"2\"";
+  return "fill=\"" + own + "\"" + (mark == Mark::kOutlinedDot ? " stroke=\"#000000\" stroke-width=\"1.6\"" : "");
 }
 
 constexpr std::string_view kRingStyle = "fill=\"none\" stroke=\"#444444\" stroke-width=\"1.3\"";
@@ -128,8 +132,7 @@ void draw_legend(Drawing& drawing, const PlotArea& area, const std::vector<Legen
     } else {
       const bool ring = entry.mark == Mark::kRing;
       drawing.circle({x + 9, y - 4.5}, ring ? kRingRadius - 2 : 5,
-                     ring ? std::string(kRingStyle) : dot_style(entry.color, entry.mark == Mark::kHollowDot),
-                     entry.name);
+                     ring ? std::string(kRingStyle) : dot_style(entry.color, entry.mark), entry.name);
     }
     drawing.write(x + 24, y, entry.name, "start", kLabel);
     x += width + 8;
@@ -407,13 +410,14 @@ std::string scatter_chart_svg(const ScatterChart& chart) {
     if (!shown(point)) continue;
     // Later colours are drawn smaller, so that all points in one place are visible.
     const double radius = std::max(2.5, 6.5 - static_cast<double>(point.color));
-    drawing.circle(place_of(point), radius, dot_style(color_of(point.color), point.hollow),
+    drawing.circle(place_of(point), radius, dot_style(color_of(point.color), kDotMarks[point.style]),
                    point.name + ": " + number_text(point.x) + ", " + number_text(point.y));
   }
   std::vector<LegendEntry> legend;
   for (std::size_t i = 0; i < chart.colors.size(); ++i) legend.push_back({chart.colors[i], color_of(i), Mark::kLine});
-  if (!chart.filled.empty()) legend.push_back({chart.filled, "#444444", Mark::kDot});
-  if (!chart.hollow.empty()) legend.push_back({chart.hollow, "#444444", Mark::kHollowDot});
+  for (std::size_t i = 0; i < chart.styles.size(); ++i) {
+    legend.push_back({chart.styles[i], i == 2 ? "#bbbbbb" : "#444444", kDotMarks[i]});
+  }
   if (!chart.ring.empty()) legend.push_back({chart.ring, "#444444", Mark::kRing});
   draw_legend(drawing, area, legend);
   return drawing.finish();

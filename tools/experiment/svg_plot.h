@@ -63,12 +63,13 @@ struct ScatterChart {
     double x = 0, y = 0;
     std::string name;       ///< shown where the pointer rests
     std::size_t color = 0;  ///< index into `colors`
-    bool hollow = false;
+    std::size_t style = 0;  ///< index into `styles`
     bool ringed = false;
   };
   std::string title, x_title, y_title;
-  std::vector<std::string> colors;   ///< what each colour stands for
-  std::string filled, hollow, ring;  ///< words of the legend; an empty one has no entry
+  std::vector<std::string> colors;    ///< what each colour stands for
+  std::vector<std::string> styles{};  ///< what filled, hollow and outlined points stand for, up to three
+  std::string ring;                   ///< of the legend; an empty one has no entry
   std::vector<Point> points;
 };
 

@@ -20,11 +20,26 @@ using CommonLayouts =
 /// Of these, with one lane too, in Mode::kChecked and Mode::kPlain: what cores without vectors run.
 using OneLaneLayouts = LayoutList<TreeLayout64K, TreeLayout256K<64>>;
 
+/// Eye rays through the tree in 128 KB: one tile at a time, and fewer nodes and leaves at hand. Budgets for code and
+/// stack are those of 256 KB.
+struct TreeLayout128K : TreeLayout256K<32> {
+  static constexpr std::uint32_t kArenaBytes = 128 * 1024;
+  static constexpr std::uint32_t kEyeTurns = 1;
+  static constexpr std::uint32_t kEyeSlots = 8;
+  static constexpr std::uint32_t kEyeTopNodes = 0;
+};
+
+/// The same in 512 KB, with no more at hand than 256 KB have. 273 nodes that stay for the frame, the root, its children
+/// and theirs, take longer to fetch than they save.
+struct TreeLayout512K : TreeLayout256K<64> {
+  static constexpr std::uint32_t kArenaBytes = 512 * 1024;
+};
+
 /// In Mode::kChecked with 4 lanes only, for sweeps of the store's and the tile's size.
 using SweepLayouts =
     LayoutList<StoreLayout128K<8>, StoreLayout128K<32>, StoreLayout512K<8>, StoreLayout512K<32>, StoreLayout512K<8, 64>,
                StoreLayout512K<32, 64>, StoreLayout256K<8, 8>, StoreLayout256K<8, 16>, StoreLayout256K<16, 16>,
-               StoreLayout256K<8, 64>, StoreLayout256K<32, 64>>;
+               StoreLayout256K<8, 64>, StoreLayout256K<32, 64>, TreeLayout128K, TreeLayout256K<32>, TreeLayout512K>;
 
 /// For frames with effects: in Mode::kPlain for every lane count, in the others with 4 lanes.
 using EffectLayouts = LayoutList<EffectLayout256K<kAllEffects, 0>, EffectLayout256K<kAllEffects, 8>,

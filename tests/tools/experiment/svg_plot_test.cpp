@@ -150,14 +150,13 @@ TEST(SvgPlot, PointsLieWhereTheirValuesAre) {
                               .x_title = "x",
                               .y_title = "y",
                               .colors = {"one", "two"},
-                              .filled = "full",
-                              .hollow = "empty",
+                              .styles = {"full", "empty", "lined"},
                               .ring = "front",
-                              .points = {{10, 1000, "a", 0, false, true},
-                                         {100, 10, "b", 1, true, false},
-                                         {1000, 0, "c", 0, false, true},
-                                         {-1, 5, "left out", 0, false, true},
-                                         {5, std::nan(""), "left out", 0, false, false}}};
+                              .points = {{10, 1000, "a", 0, 0, true},
+                                         {100, 10, "b", 1, 1, false},
+                                         {1000, 0, "c", 0, 2, true},
+                                         {-1, 5, "left out", 0, 0, true},
+                                         {5, std::nan(""), "left out", 0, 0, false}}};
   const auto elements = parse_markup(scatter_chart_svg(chart));
   std::vector<MarkupElement> dots, rings;
   for (const MarkupElement& circle : elements_named(elements, "circle")) {
@@ -172,17 +171,19 @@ TEST(SvgPlot, PointsLieWhereTheirValuesAre) {
   EXPECT_LT(dots[2].number("cy"), area.bottom);
   EXPECT_EQ(dots[1].attributes.at("fill"), "#ffffff") << "hollow";
   EXPECT_NE(dots[0].attributes.at("fill"), "#ffffff");
+  EXPECT_EQ(dots[0].attributes.count("stroke"), 0u);
+  EXPECT_EQ(dots[2].attributes.at("stroke"), "#000000") << "outlined";
   EXPECT_EQ(rings[0].attributes.at("cx"), dots[0].attributes.at("cx"));
   EXPECT_EQ(rings[1].attributes.at("cy"), dots[2].attributes.at("cy"));
   const auto front = points_of(elements_named(elements, "polyline").at(0));
   ASSERT_EQ(front.size(), 2u) << "the ringed ones, joined";
   EXPECT_NEAR(front[1].x, dots[2].number("cx"), 0.01);
-  for (const char* words : {"0", "one", "two", "full", "empty", "front"}) text_element(elements, words);
+  for (const char* words : {"0", "one", "two", "full", "empty", "lined", "front"}) text_element(elements, words);
 }
 
 TEST(SvgPlot, PointsOfNoErrorAtAllNeedNoAxis) {
   ScatterChart chart;
-  chart.points = {{10, 0, "a", 0, false, true}, {20, 0, "b", 1, false, false}};
+  chart.points = {{10, 0, "a", 0, 0, true}, {20, 0, "b", 1, 0, false}};
   const auto elements = parse_markup(scatter_chart_svg(chart));
   int dots = 0;
   for (const MarkupElement& circle : elements_named(elements, "circle")) {

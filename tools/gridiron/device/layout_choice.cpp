@@ -48,8 +48,6 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
   }
   if (list.empty() && layout.has_effects)
     usage_error(store + shading + ": effects need a local store of 64 or 256 KB; --shading simple does without them");
-  const std::string name(configuration.name);
-  if (list.empty()) usage_error(store + ": not built for configuration " + name + "; --configuration grid is");
   usage_error(store + shading + ": not built for " + words_of_layout(layout) + "; there are " + list +
               (configuration.has_grid() ? "" : "; --configuration grid has other tiles, and packets"));
 }

@@ -106,10 +106,7 @@ StoreFacts effect_store_facts(sim::StoreSize store, std::uint32_t packet_width) 
 }
 
 StoreFacts usual_store_facts(sim::StoreSize store, std::uint32_t packet_width) {
-  if (packet_width == 0) {
-    if (store != sim::StoreSize::k64KB) store = sim::StoreSize::k256KB;
-    return *find_store_facts({store, tree_tile_width(store), 0});
-  }
+  if (packet_width == 0) return *find_store_facts({store, tree_tile_width(store), 0});
   const std::uint32_t tile_width = sim::usual_tile_width(store);
   return *find_store_facts({store, tile_width, std::min(packet_width, tile_width)});
 }

@@ -39,11 +39,11 @@ struct StoreFacts {
 
 /// Pixels along the edge of a tile whose eye rays go through the tree.
 [[nodiscard]] constexpr std::uint32_t tree_tile_width(sim::StoreSize store) {
-  return store == sim::StoreSize::k64KB ? 16 : 64;
+  return store == sim::StoreSize::k64KB ? 16 : store == sim::StoreSize::k128KB ? 32 : 64;
 }
 
 /// The layout with the store's usual tiles. @param packet_width  8 or 32; 32 becomes 16 if tiles are no wider. 0: the
-/// one whose eye rays go through the tree, of 64 KB or else of 256 KB.
+/// one whose eye rays go through the tree.
 [[nodiscard]] StoreFacts usual_store_facts(sim::StoreSize store, std::uint32_t packet_width);
 
 /// The layout that renders effects. @param store  64 KB, else that of 256 KB is returned. @param packet_width  0, 8 or
