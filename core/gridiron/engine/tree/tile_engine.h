@@ -52,6 +52,7 @@ template <class Layout>
 struct alignas(128) TileEyeStore {
   static constexpr std::uint32_t kWidth = Layout::kEyeTileWidth;
   static constexpr std::uint32_t kTurns = Layout::kEyeTurns;
+  static_assert(kTurns == 1 || kTurns == 2, "trace_eyes() has a tracer for each");
   static constexpr std::uint32_t kMostLanes = Layout::kMostLanes;
   using Tile = TileMemory<kWidth, kMostLanes>;
   using Cache = TreeCache<Layout::kEyeSlots, Layout::kLeafTriangles>;
