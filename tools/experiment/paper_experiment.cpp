@@ -85,11 +85,12 @@ std::vector<std::string> paper_file_names() {
       "local_store_map_best.csv", "local_store_map_grid.csv", "local_store_map_bvh.csv",
       "local_store_map_reference.csv", "sweep_bandwidth.csv",
       "sweep_lambda.csv", "sweep_lambda.svg", "sweep_latency.csv", "sweep_local_store.csv",
-      "sweep_local_store_best.svg", "sweep_local_store_grid.svg", "sweep_local_store_reference.svg", "sweep_macro_depth.csv",
-      "sweep_macro_depth.svg", "sweep_macro_width.csv", "sweep_macro_width.svg", "sweep_packet.csv",
-      "sweep_bvh.csv",
-      "sweep_tile_width.csv", "sweep_tile_width_best.svg", "sweep_tile_width_grid.svg", "sweep_tile_width_reference.svg",
-      "sweep_triangle_depth.csv", "sweep_triangle_depth.svg", "table1_build.svg", "table1_exponents.csv",
+      "sweep_local_store_best.svg", "sweep_local_store_grid.svg", "sweep_local_store_reference.svg",
+      "sweep_macro_depth.csv", "sweep_macro_depth.svg", "sweep_macro_width.csv", "sweep_macro_width.svg",
+      "sweep_packet.csv", "sweep_bvh.csv",
+      "sweep_tile_width.csv", "sweep_tile_width_best.svg", "sweep_tile_width_grid.svg",
+      "sweep_tile_width_reference.svg", "sweep_triangle_depth.csv", "sweep_triangle_depth.svg",
+      "table1_build.svg", "table1_exponents.csv",
       "table1_growth.csv", "table1_traversal.svg", "table2_scenes.csv", "table3_fps.csv", "table3_shading_cost.csv",
       "table4_hiding.csv", "table4_levers.csv", "table4_wait_share.csv"};
   // clang-format on

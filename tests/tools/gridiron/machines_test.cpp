@@ -201,7 +201,7 @@ TEST(Machines, TheExampleFileRenders) {
   EXPECT_EQ(report["machine"]["name"], "cluster-8");
   EXPECT_EQ(report["machine"]["cores"], 8);
   EXPECT_EQ(report["machine"]["clock_hz"], 1e9);
-  EXPECT_EQ(report["local_store"]["arena_bytes"], 65536) << "the largest store of best that it has room for";
+  EXPECT_EQ(report["local_store"]["arena_bytes"], 131072) << "the largest store that it has room for";
   EXPECT_GT(report["frame"]["fps"], 0.0);
 }
 

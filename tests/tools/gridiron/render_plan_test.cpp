@@ -171,7 +171,7 @@ TEST(InfoPlan, TheDefaultConfigurationIsCompleted) {
   EXPECT_EQ(name(kMesh), "reference");
   request.format.reset();
   request.layout.store = StoreSize::k128KB;
-  EXPECT_EQ(name(kMesh), "grid");
+  EXPECT_EQ(name(kMesh), "best");
 }
 
 TEST(InfoPlan, SettlesTheLocalStoreThatIsToldOf) {

@@ -274,7 +274,7 @@ TEST(Render, TheDefaultConfigurationIsTheBestThatCanRender) {
       {{"a.ply", "--accuracy", "paper"}, "reference"},
       {{"reference.gri"}, "grid"},
       {{"a.ply", "--store", "64"}, "best"},
-      {{"a.ply", "--store", "128"}, "grid"},
+      {{"a.ply", "--store", "128"}, "best"},
       {{"a.ply", "--machine", "small.machine"}, "best"},
       {{"a.ply", "--machine", "board.machine"}, "grid"},
   };
