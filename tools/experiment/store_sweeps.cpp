@@ -92,10 +92,11 @@ Point make_point(Plan& plan, const Stage& stage, const View& view, const char* c
     point.note = missing_words(layout);
     return point;
   }
-  fitted.depths.fetch = std::min(fitted.depths.fetch, point.layout->most_depths.fetch);
   if (usual.has_grid()) {
     fitted.depths.macro = std::min(fitted.depths.macro, point.layout->most_depths.macro);
     fitted.depths.triangle = std::min(fitted.depths.triangle, point.layout->most_depths.triangle);
+  } else {
+    fitted.depths.fetch = std::min(fitted.depths.fetch, point.layout->most_depths.fetch);
   }
   if (fitted.depths.macro != usual.depths.macro || fitted.depths.triangle != usual.depths.triangle) {
     point.note = "no room for " + std::to_string(usual.depths.macro) + " cell blocks and " +
@@ -311,8 +312,8 @@ Writer plan_tile_sweep(Plan& plan, const Stage& stage) {
         "word of bits, so that tiles of 64 pixels take four. Packets of 8x8 have mailboxes of 64 slots, those of "
         "16x16 and of tiles of 64 pixels 256, the others 1,024. Two tiles of 64 pixels take 96 KB with their planes of "
         "colour, distance and triangle; beside them there is room for 8 triangle buffers instead of 12; configuration "
-        "grid uses 3. Configuration best draws 32 x 32 pixels at a time whatever a tile's width, two of them in turn; "
-        "wider tiles are claimed and leave less often.");
+        "grid uses 3. Configuration best draws 32 x 32 pixels at a time whatever a tile's width; in tiles of 64 pixels "
+        "two such squares take turns, and these tiles are claimed and leave less often.");
     book.paragraph(
         "Frames over those at 32 pixels, all views: the reference renders " +
         ratio_words(*sweep, done, "reference", &RunResult::fps) + "; grid " +
@@ -373,15 +374,11 @@ Table map_table(const std::string& configuration) {
     map.columns.push_back({layout.key + "_offset", layout.title + ": offset"});
     map.columns.push_back({layout.key + "_bytes", "bytes"});
   }
-  // A small store may do without a region.
-  const auto region_count = [](const NamedLayout& layout) { return layout.facts.regions.size(); };
-  for (const tool::LocalStoreRegion& region : std::ranges::max_element(layouts, {}, region_count)->facts.regions) {
-    std::vector<Cell> cells = {region.name};
+  for (std::size_t i = 0; i < layouts.front().facts.regions.size(); ++i) {
+    std::vector<Cell> cells = {layouts.front().facts.regions[i].name};
     for (const NamedLayout& layout : layouts) {
-      const auto found = std::ranges::find(layout.facts.regions, region.name, &tool::LocalStoreRegion::name);
-      const bool is_there = found != layout.facts.regions.end();
-      cells.push_back(is_there ? Cell{found->offset_bytes} : Cell{});
-      cells.push_back(is_there ? Cell{found->bytes} : Cell{});
+      cells.emplace_back(layout.facts.regions[i].offset_bytes);
+      cells.emplace_back(layout.facts.regions[i].bytes);
     }
     map.add(std::move(cells));
   }
