@@ -22,3 +22,9 @@ function(gridiron_freestanding target)
       -fno-asynchronous-unwind-tables -fno-unwind-tables -Wvla -Walloca -Wstack-usage=8704)
   endif()
 endfunction()
+
+# A program's or test's sources, compiled a few at a time: most of the work is their headers. So names that are local to
+# one source must differ from those of its neighbours.
+function(gridiron_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+endfunction()

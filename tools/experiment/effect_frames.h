@@ -54,7 +54,9 @@ struct EffectFrame {
   tool::Picture<std::uint32_t> picture;                ///< 0xAABBGGRR
 
   [[nodiscard]] std::uint64_t count(WorkId kind) const { return work[kind.number()]; }
-  [[nodiscard]] const sim::StageTiming& stage(Stage stage) const { return stages[static_cast<std::size_t>(stage)]; }
+  [[nodiscard]] const sim::StageTiming& stage(gridiron::Stage stage) const {
+    return stages[static_cast<std::size_t>(stage)];
+  }
   [[nodiscard]] std::uint64_t primary_rays() const;
   [[nodiscard]] double wait_cycles() const;            ///< of all stages and cores
   [[nodiscard]] double secondary_wait_cycles() const;  ///< of stages surface, shadow, occlusion, bounce, environment

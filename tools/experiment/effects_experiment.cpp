@@ -76,7 +76,7 @@ SceneFrames list_frames(std::string_view key) {
   return frames;
 }
 
-struct Step {
+struct EffectStep {
   const EffectScene* scene;
   EffectFrameRequest request;
   EffectFrame* frame;
@@ -84,8 +84,8 @@ struct Step {
   std::uint32_t expected;  ///< EffectBits
 };
 
-std::vector<Step> list_steps(std::vector<SceneFrames>& scenes, const ExperimentSettings& settings) {
-  std::vector<Step> steps;
+std::vector<EffectStep> list_steps(std::vector<SceneFrames>& scenes, const ExperimentSettings& settings) {
+  std::vector<EffectStep> steps;
   EffectFrameRequest request{.width = settings.width, .height = settings.height, .lambda = kLambda};
   for (SceneFrames& frames : scenes) {
     const auto add = [&](const Variant& variant, EffectFrame& frame) {
@@ -352,11 +352,11 @@ std::vector<std::string> effects_file_names() {
 ExperimentResult run_effects_experiment(const ExperimentSettings& settings, const ProgressCall& progress) {
   std::vector<SceneFrames> scenes;
   for (const std::string_view key : kEffectSceneKeys) scenes.push_back(list_frames(key));
-  std::vector<Step> steps = list_steps(scenes, settings);
+  std::vector<EffectStep> steps = list_steps(scenes, settings);
   std::mutex mutex;
   std::uint32_t done = 0;
   share_work(settings.threads, steps.size(), [&](std::size_t i) {
-    const Step& step = steps[i];
+    const EffectStep& step = steps[i];
     *step.frame = render_effect_frame(*step.scene, step.request);
     check_absent_costs(*step.frame, step.expected, step.name);
     const std::lock_guard lock(mutex);

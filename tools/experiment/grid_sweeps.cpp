@@ -14,22 +14,22 @@ namespace {
 const char* const kSweptConfigurations[] = {"reference", "grid"};
 
 /// One frame of a sweep: a view, a configuration, and the parameter's value.
-struct Step {
+struct SweepStep {
   const View* view;
   std::string configuration;
   double value;
   Plan::RunId run;
 };
 
-bool is_same_curve(const Step& a, const Step& b) {
+bool is_same_curve(const SweepStep& a, const SweepStep& b) {
   return a.view == b.view && a.configuration == b.configuration;
 }
 
 // Plans each value for each swept view and configuration; `change` sets it in a variant.
 template <class Change>
-std::vector<Step> plan_steps(Plan& plan, const Stage& stage, const std::vector<double>& values, const std::string& name,
-                             Change change) {
-  std::vector<Step> steps;
+std::vector<SweepStep> plan_steps(Plan& plan, const Stage& stage, const std::vector<double>& values,
+                                  const std::string& name, Change change) {
+  std::vector<SweepStep> steps;
   for (const View* view : stage.sweep_views) {
     for (const char* configuration : kSweptConfigurations) {
       for (const double value : values) {
@@ -45,12 +45,12 @@ std::vector<Step> plan_steps(Plan& plan, const Stage& stage, const std::vector<d
   return steps;
 }
 
-Table step_table(const Plan& done, const std::vector<Step>& steps, const std::string& name, Column parameter) {
+Table step_table(const Plan& done, const std::vector<SweepStep>& steps, const std::string& name, Column parameter) {
   Table table =
       make_table(name, "view", "configuration", std::move(parameter), "fps", Column("wait_percent", "wait, %"),
                  Column("fetched_mb", "fetched, MB", 1), Column("scene_mb", "main memory, MB", 1), "references",
                  "traversal_steps", "intersection_tests", "note");
-  for (const Step& step : steps) {
+  for (const SweepStep& step : steps) {
     const RunResult& run = done.result(step.run);
     std::vector<Cell> row = {step.view->title, step.configuration, step.value};
     if (run.failed()) {
@@ -70,8 +70,8 @@ Table step_table(const Plan& done, const std::vector<Step>& steps, const std::st
 
 // One curve for each view and configuration.
 template <class Value>
-std::string step_chart(const Plan& done, const std::vector<Step>& steps, LineChart chart, Value value) {
-  for (const Step& step : steps) {
+std::string step_chart(const Plan& done, const std::vector<SweepStep>& steps, LineChart chart, Value value) {
+  for (const SweepStep& step : steps) {
     const std::string name = step.view->title + ", " + step.configuration;
     auto series = std::ranges::find(chart.series, name, &Series::name);
     if (series == chart.series.end()) series = chart.series.insert(series, {name, {}, false});
@@ -82,10 +82,11 @@ std::string step_chart(const Plan& done, const std::vector<Step>& steps, LineCha
 }
 
 // "3 (Bunny, reference), ...": the value with the most frames a second on each curve; marked at the ends of its range.
-std::string best_values(const Plan& done, const std::vector<Step>& steps) {
-  std::vector<const Step*> best;
-  for (const Step& step : steps) {
-    const auto same = std::ranges::find_if(best, [&step](const Step* other) { return is_same_curve(*other, step); });
+std::string best_values(const Plan& done, const std::vector<SweepStep>& steps) {
+  std::vector<const SweepStep*> best;
+  for (const SweepStep& step : steps) {
+    const auto same =
+        std::ranges::find_if(best, [&step](const SweepStep* other) { return is_same_curve(*other, step); });
     if (same == best.end()) {
       best.push_back(&step);
     } else if (!(done.result((*same)->run).fps() >= done.result(step.run).fps())) {  // also where that one failed
@@ -93,9 +94,9 @@ std::string best_values(const Plan& done, const std::vector<Step>& steps) {
     }
   }
   std::string text;
-  for (const Step* step : best) {
+  for (const SweepStep* step : best) {
     std::vector<double> values;
-    for (const Step& other : steps) {
+    for (const SweepStep& other : steps) {
       if (is_same_curve(other, *step)) values.push_back(other.value);
     }
     text += (text.empty() ? "" : ", ") + swept_value_words(step->value, values) + " (" + step->view->title + ", " +
@@ -106,12 +107,12 @@ std::string best_values(const Plan& done, const std::vector<Step>& steps) {
 
 // The frames, in percent, that a configuration's own value loses against the fastest one, over the views. Floats are
 // compared after rounding to float.
-Range lost_frames(const Plan& done, const std::vector<Step>& steps, const std::string& configuration, double own) {
+Range lost_frames(const Plan& done, const std::vector<SweepStep>& steps, const std::string& configuration, double own) {
   Range lost;
-  for (const Step& chosen : steps) {
+  for (const SweepStep& chosen : steps) {
     if (chosen.configuration != configuration || static_cast<float>(chosen.value) != static_cast<float>(own)) continue;
     double most = 0;
-    for (const Step& other : steps) {
+    for (const SweepStep& other : steps) {
       const RunResult& run = done.result(other.run);
       if (is_same_curve(other, chosen) && !run.failed()) most = std::max(most, run.fps());
     }
@@ -121,22 +122,22 @@ Range lost_frames(const Plan& done, const std::vector<Step>& steps, const std::s
 }
 
 // Waiting, in percent of core cycles, of a configuration with a value, over the views.
-Range waits_at(const Plan& done, const std::vector<Step>& steps, const std::string& configuration, double value) {
+Range waits_at(const Plan& done, const std::vector<SweepStep>& steps, const std::string& configuration, double value) {
   Range waits;
-  for (const Step& step : steps) {
+  for (const SweepStep& step : steps) {
     if (step.configuration == configuration && step.value == value) waits.add(done.result(step.run).wait_percent());
   }
   return waits;
 }
 
 // "reference 5.5 to 30.1 %, grid 0.5 to 3.3 %": the extra bytes that the last value fetches over the first.
-std::string fetched_more(const Plan& done, const std::vector<Step>& steps) {
+std::string fetched_more(const Plan& done, const std::vector<SweepStep>& steps) {
   std::string text;
   for (const char* configuration : kSweptConfigurations) {
     Range more;
-    for (const Step& first : steps) {
+    for (const SweepStep& first : steps) {
       if (first.configuration != configuration || first.value != steps.front().value) continue;
-      for (const Step& last : steps) {
+      for (const SweepStep& last : steps) {
         if (!is_same_curve(last, first) || last.value != steps.back().value) continue;
         more.add(percent_more(static_cast<double>(done.result(last.run).bytes_in()),
                               static_cast<double>(done.result(first.run).bytes_in())));
@@ -147,13 +148,13 @@ std::string fetched_more(const Plan& done, const std::vector<Step>& steps) {
   return text;
 }
 
-std::vector<Step> plan_lambdas(Plan& plan, const Stage& stage) {
+std::vector<SweepStep> plan_lambdas(Plan& plan, const Stage& stage) {
   return plan_steps(
       plan, stage, {0.125, 0.25, 0.4, 0.7, 1, 2, 3, 4, 5, 6, 8, 16}, "lambda",
       [](GridVariant& variant, double value) { variant.configuration.lambda = static_cast<float>(value); });
 }
 
-std::vector<Step> plan_widths(Plan& plan, const Stage& stage) {
+std::vector<SweepStep> plan_widths(Plan& plan, const Stage& stage) {
   return plan_steps(plan, stage, {2, 3, 4, 5, 6, 7, 8}, "macro_width", [](GridVariant& variant, double value) {
     variant.configuration.macro_width = static_cast<std::uint32_t>(value);
   });
@@ -174,7 +175,7 @@ struct Ring {
 constexpr Ring kMacroRing = {&tool::BufferDepths::macro, "macro_depth", "cell blocks"};
 constexpr Ring kTriangleRing = {&tool::BufferDepths::triangle, "triangle_depth", "triangle buffers"};
 
-std::vector<Step> plan_depths(Plan& plan, const Stage& stage, const Ring& ring) {
+std::vector<SweepStep> plan_depths(Plan& plan, const Stage& stage, const Ring& ring) {
   return plan_steps(plan, stage, ring.values(), ring.key, [&ring](GridVariant& variant, double value) {
     variant.configuration.depths.*ring.depth = static_cast<std::uint32_t>(value);
   });
@@ -193,7 +194,7 @@ ChoiceWords plan_choice_words(Plan& plan, const Stage& stage) {
   const auto macros = plan_depths(plan, stage, kMacroRing), triangles = plan_depths(plan, stage, kTriangleRing);
   return [lambdas, widths, macros, triangles](const Plan& done) {
     const tool::Configuration grid = grid_variant("grid").configuration;
-    const auto depth_words = [&done](const std::vector<Step>& steps, std::uint32_t own, const std::string& noun) {
+    const auto depth_words = [&done](const std::vector<SweepStep>& steps, std::uint32_t own, const std::string& noun) {
       return lost_frames(done, steps, "grid", own).percent(2) + " for its " + std::to_string(own) + " " + noun +
              ", with which it waits " + waits_at(done, steps, "grid", own).percent(2) +
              " of its cycles instead of the " + waits_at(done, steps, "grid", 2).percent(2) + " with 2";
@@ -312,7 +313,7 @@ Writer plan_prefetch_sweeps(Plan& plan, const Stage& stage) {
         "; from the least to the most triangle buffers by: " + fetched_more(done, triangles) +
         ". Most frames a second with this many cell blocks: " + best_values(done, macros) +
         "; with this many triangle buffers: " + best_values(done, triangles) + ".");
-    const auto write = [&](const Ring& ring, const std::vector<Step>& steps, const std::string& title,
+    const auto write = [&](const Ring& ring, const std::vector<SweepStep>& steps, const std::string& title,
                            const std::string& buffers) {
       const std::string name = std::string("sweep_") + ring.key, nouns = ring.noun;
       book.figure(name,

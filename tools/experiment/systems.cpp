@@ -42,7 +42,9 @@ tool::RenderPlan plan_of(const GridVariant& variant, const View& view, const Fra
   return plan;
 }
 
-// A frame in the main memory of the home machine.
+}  // namespace
+
+// A frame in the main memory of the home machine. CloseLook's parts, which other sources know by name, are one.
 struct PreparedFrame {
   PreparedFrame(tool::RenderPlan plan_of_frame, const View& view)
       : plan(std::move(plan_of_frame)), memory(home_machine()->main_memory_bytes) {
@@ -53,6 +55,8 @@ struct PreparedFrame {
   tool::RenderPlan plan;
   tool::FrameMemory memory;
 };
+
+namespace {
 
 // The same with all its planes, without a clock.
 tool::RenderPlan answers_plan_of(const GridVariant& variant, const View& view, const FrameRequest& request) {

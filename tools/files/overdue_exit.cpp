@@ -18,7 +18,7 @@ namespace {
 constexpr long kPatienceNanoseconds = 250'000'000;  // before the first look
 constexpr long kAgainNanoseconds = 10'000'000;      // between looks while something undivided is done
 
-std::atomic<bool> has_timer{false}, is_expected{false}, is_complete{false}, is_terminal{false};
+std::atomic<bool> has_timer{false}, is_expected{false}, is_complete{false}, is_on_terminal{false};
 std::atomic<int> exit_code{0}, undivided_count{0}, leaving_count{0};
 std::atomic<unsigned> written_count{0};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
@@ -41,7 +41,7 @@ void say_interrupted() {
   char* digit = digits + sizeof digits - 1;
   const unsigned count = written_count.load();
   for (unsigned rest = count; rest != 0; rest /= 10) *--digit = static_cast<char>('0' + rest % 10);
-  std::strcat(words, is_terminal.load() ? "\r\033[Kinterrupted; " : "interrupted; ");
+  std::strcat(words, is_on_terminal.load() ? "\r\033[Kinterrupted; " : "interrupted; ");
   std::strcat(words, count == 0 ? "no file was written" : digit);
   if (count != 0) {
     std::strcat(words, count == 1 ? " file was written before that and is kept"
@@ -89,7 +89,7 @@ void begin_overdue_exit() {
   event.sigev_signo = SIGALRM;
   const bool can_watch =
       ::sigaction(SIGALRM, &action, nullptr) == 0 && ::timer_create(CLOCK_MONOTONIC, &event, &timer) == 0;
-  is_terminal.store(::isatty(STDERR_FILENO) == 1);
+  is_on_terminal.store(::isatty(STDERR_FILENO) == 1);
   has_timer.store(can_watch);
 }
 

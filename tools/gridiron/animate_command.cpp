@@ -49,15 +49,16 @@ struct AnimationFrame {
   [[nodiscard]] double fps() const { return seconds() > 0 ? 1 / seconds() : 0; }
 };
 
-constexpr const char* kExpected = "animate takes PLY meshes and folders of .ply files";
+constexpr const char* kExpectedMeshes = "animate takes PLY meshes and folders of .ply files";
 
 void require_mesh(const std::filesystem::path& path, SceneKind kind) {
   if (kind != SceneKind::kText && kind != SceneKind::kPacked) return;
-  input_error(path, std::string("is a ") + (kind == SceneKind::kText ? "text" : "packed") + " scene; " + kExpected);
+  input_error(path,
+              std::string("is a ") + (kind == SceneKind::kText ? "text" : "packed") + " scene; " + kExpectedMeshes);
 }
 
 SceneInput read_mesh(const std::filesystem::path& path) {
-  SceneInput input = read_scene_input(path, std::nullopt, std::nullopt, kExpected);
+  SceneInput input = read_scene_input(path, std::nullopt, std::nullopt, kExpectedMeshes);
   const bool is_packed = std::holds_alternative<PackedScene>(input.content);
   require_mesh(path, input.text ? SceneKind::kText : is_packed ? SceneKind::kPacked : SceneKind::kMesh);
   return input;
@@ -78,7 +79,7 @@ std::vector<AnimationFrame> collect_frames(const AnimateRequest& request) {
       if (scene_kind_by_ending(entry->path()) == SceneKind::kMesh) files.push_back(entry->path());
     }
     if (error) input_error(input, "cannot be read: " + error.message());
-    if (files.empty()) input_error(input, std::string("holds no file that ends with .ply; ") + kExpected);
+    if (files.empty()) input_error(input, std::string("holds no file that ends with .ply; ") + kExpectedMeshes);
     std::ranges::sort(files);
     for (const std::filesystem::path& file : files) frames.push_back({.input = file});
   }

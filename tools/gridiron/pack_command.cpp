@@ -15,7 +15,7 @@
 namespace gridiron::tool {
 namespace {
 
-constexpr const char* kExpected = "pack takes a PLY mesh or a text scene (NFF)";
+constexpr const char* kExpectedScene = "pack takes a PLY mesh or a text scene (NFF)";
 
 // The scene with the named configuration, or with the default one for its triangles.
 SceneRequest completed(const PackRequest& request, const KnownScene& known) {
@@ -50,10 +50,11 @@ void run_command(const PackRequest& request) {
   (void)completed(request, foreseen_scene(request.scene));
   declare_outputs({{"-o", request.output, OutputKind::kBinary}});
   const StageLines stages(!request.scene.quiet);
-  const SceneInput input = read_scene_input(request.scene.input, request.scene.tolerance, PictureRequest{}, kExpected);
+  const SceneInput input =
+      read_scene_input(request.scene.input, request.scene.tolerance, PictureRequest{}, kExpectedScene);
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
-    input_error(input.path, std::string("is a scene image already; ") + kExpected);
+    input_error(input.path, std::string("is a scene image already; ") + kExpectedScene);
   }
 
   const SceneRequest scene = completed(request, known_scene(input));

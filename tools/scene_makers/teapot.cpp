@@ -55,10 +55,10 @@ double cubic(double p0, double p1, double p2, double p3, std::uint32_t step, std
 }
 
 // One row of vertices around a part: a closed ring, or a single pole.
-using Ring = std::vector<std::uint32_t>;
+using VertexRing = std::vector<std::uint32_t>;
 
 // Joins two rings; `above` lies to the left of the direction in which the rings run, seen from outside.
-void join(Mesh& mesh, const Ring& above, const Ring& below) {
+void join(Mesh& mesh, const VertexRing& above, const VertexRing& below) {
   const std::size_t count = above.size() > below.size() ? above.size() : below.size();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t next = (i + 1) % count;
@@ -73,9 +73,9 @@ void join(Mesh& mesh, const Ring& above, const Ring& below) {
   }
 }
 
-Ring pot_ring(Mesh& mesh, double radius, double height, std::uint32_t segments) {
+VertexRing pot_ring(Mesh& mesh, double radius, double height, std::uint32_t segments) {
   if (radius == 0) return {mesh.add_vertex({0, height, 0})};
-  Ring ring;
+  VertexRing ring;
   // Counter-clockwise seen from above: with y up, from x towards -z.
   constexpr double kCos[4] = {1, 0, -1, 0};
   constexpr double kSin[4] = {0, 1, 0, -1};
@@ -91,7 +91,7 @@ Ring pot_ring(Mesh& mesh, double radius, double height, std::uint32_t segments) 
 }
 
 void add_pot(Mesh& mesh, std::uint32_t segments) {
-  Ring above;
+  VertexRing above;
   const Profile2* last_end = nullptr;
   for (const auto& curve : kPotProfile) {
     // A new row starts only if the curve does not begin at the last one's end.
@@ -100,7 +100,7 @@ void add_pot(Mesh& mesh, std::uint32_t segments) {
     for (std::uint32_t i = connected ? 1 : 0; i <= segments; ++i) {
       const double radius = cubic(curve[0].radius, curve[1].radius, curve[2].radius, curve[3].radius, i, segments);
       const double height = cubic(curve[0].height, curve[1].height, curve[2].height, curve[3].height, i, segments);
-      Ring ring = pot_ring(mesh, radius, height, segments);
+      VertexRing ring = pot_ring(mesh, radius, height, segments);
       if (!above.empty()) join(mesh, above, ring);
       above = std::move(ring);
     }
@@ -108,7 +108,7 @@ void add_pot(Mesh& mesh, std::uint32_t segments) {
   }
 }
 
-Ring tube_ring(Mesh& mesh, std::span<const Station, 4> curve, std::uint32_t step, std::uint32_t segments) {
+VertexRing tube_ring(Mesh& mesh, std::span<const Station, 4> curve, std::uint32_t step, std::uint32_t segments) {
   const auto along = [&](auto member) {
     return cubic(curve[0].*member, curve[1].*member, curve[2].*member, curve[3].*member, step, segments);
   };
@@ -117,7 +117,7 @@ Ring tube_ring(Mesh& mesh, std::span<const Station, 4> curve, std::uint32_t step
   const double outer_x = along(&Station::outer_x);
   const double outer_height = along(&Station::outer_height);
   const double half_width = along(&Station::half_width);
-  Ring ring;
+  VertexRing ring;
   for (std::uint32_t side = 0; side < 2; ++side) {
     for (std::uint32_t i = 0; i < segments; ++i) {
       const std::uint32_t place = side == 0 ? i : segments - i;
@@ -130,7 +130,7 @@ Ring tube_ring(Mesh& mesh, std::span<const Station, 4> curve, std::uint32_t step
   return ring;
 }
 
-Ring middle_of(Mesh& mesh, const Ring& ring) {
+VertexRing middle_of(Mesh& mesh, const VertexRing& ring) {
   Point sum{};
   for (const std::uint32_t index : ring) {
     for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += mesh.vertices[index][axis];
@@ -140,11 +140,11 @@ Ring middle_of(Mesh& mesh, const Ring& ring) {
 }
 
 void add_tube(Mesh& mesh, std::span<const Station, 7> stations, std::uint32_t segments) {
-  Ring last = tube_ring(mesh, stations.first<4>(), 0, segments);
+  VertexRing last = tube_ring(mesh, stations.first<4>(), 0, segments);
   join(mesh, middle_of(mesh, last), last);
   for (std::uint32_t step = 1; step <= 2 * segments; ++step) {
-    Ring ring = step <= segments ? tube_ring(mesh, stations.first<4>(), step, segments)
-                                 : tube_ring(mesh, stations.last<4>(), step - segments, segments);
+    VertexRing ring = step <= segments ? tube_ring(mesh, stations.first<4>(), step, segments)
+                                       : tube_ring(mesh, stations.last<4>(), step - segments, segments);
     join(mesh, last, ring);
     last = std::move(ring);
   }

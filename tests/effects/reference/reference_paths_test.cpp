@@ -11,7 +11,7 @@ namespace {
 using tool::SceneDescription;
 using tool::SceneMaterial;
 
-constexpr std::uint32_t kWidth = 65;  // odd: one ray straight down
+constexpr std::uint32_t kPathWidth = 65;  // odd: one ray straight down
 
 SceneMaterial mirror(float ks = 1.0f) {
   return {.kd = 0.0f, .ks = ks};
@@ -30,14 +30,14 @@ void add_sheet(SceneDescription& scene, float z, std::uint16_t material) {
 }
 
 DVec3 direction_of(const SceneDescription& scene, std::uint32_t x, std::uint32_t y) {
-  const ReferenceCamera camera = reference_camera(scene.view, kWidth, kWidth);
+  const ReferenceCamera camera = reference_camera(scene.view, kPathWidth, kPathWidth);
   return glm::normalize(DVec3(camera.direction(static_cast<float>(x), static_cast<float>(y))));
 }
 
 template <class Check>
 void for_each_pixel(const SceneDescription& scene, const ReferencePicture& picture, const Check& check) {
-  for (std::uint32_t y = 0; y < kWidth; ++y) {
-    for (std::uint32_t x = 0; x < kWidth; ++x) {
+  for (std::uint32_t y = 0; y < kPathWidth; ++y) {
+    for (std::uint32_t x = 0; x < kPathWidth; ++x) {
       check(picture.index(x, y), direction_of(scene, x, y));
     }
   }
@@ -64,12 +64,12 @@ TEST(ReferencePaths, AMirrorShowsATriangleAtTheMirroredPlace) {
   // Lit from beneath, from far away: the side that the mirror sees.
   scene.shadows = false;
   scene.point_lights.push_back({{0, 0, -1e6f}, Vec3(0.8f)});
-  const ReferencePicture picture = render_reference(scene, kWidth, kWidth);
+  const ReferencePicture picture = render_reference(scene, kPathWidth, kPathWidth);
   std::size_t inside = 0, outside = 0;
   for_each_pixel(scene, picture, [&](std::size_t i, const DVec3& dir) {
     if (picture.ids[i] == id || picture.ids[i] == kReferenceNoTriangle) return;
     const DVec3 at = DVec3(scene.view.from) + dir * (-3.0 / dir.z);  // in the plane z = -1
-    double least = 1e9;  // from the edges, inside positive
+    double least = 1e9;                                              // from the edges, inside positive
     for (int k = 0; k < 3; ++k) {
       const DVec3 a(corners[k]), b(corners[(k + 1) % 3]);
       const double side = (b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x);
@@ -97,7 +97,7 @@ TEST(ReferencePaths, ASlabOfGlassMovesRaysAside) {
   add_sheet(scene, -1, floor);
   scene.shadows = false;
   scene.point_lights.push_back({{0.5f, 0.3f, 0.2f}, Vec3(1)});
-  const ReferencePicture picture = render_reference(scene, kWidth, kWidth);
+  const ReferencePicture picture = render_reference(scene, kPathWidth, kPathWidth);
   for_each_pixel(scene, picture, [&](std::size_t i, const DVec3& dir) {
     const double cosine = -dir.z;
     const double sine = std::sqrt(1.0 - cosine * cosine);
@@ -116,9 +116,9 @@ TEST(ReferencePaths, NormalIncidenceReflectsWhatTheIndexSays) {
     scene.background = Vec3(1);
     add_sheet(scene, 0, add_material(scene, glass(n)));
     add_sheet(scene, -1, add_material(scene, black()));
-    const ReferencePicture picture = render_reference(scene, kWidth, kWidth);
+    const ReferencePicture picture = render_reference(scene, kPathWidth, kPathWidth);
     const double expected = std::pow((n - 1.0) / (n + 1.0), 2.0);
-    EXPECT_NEAR(picture.linear[picture.index(kWidth / 2, kWidth / 2)].x, expected, 1e-7) << n;
+    EXPECT_NEAR(picture.linear[picture.index(kPathWidth / 2, kPathWidth / 2)].x, expected, 1e-7) << n;
     for_each_pixel(scene, picture, [&](std::size_t i, const DVec3& dir) {
       EXPECT_NEAR(picture.linear[i].x, fresnel_by_angles(-dir.z, 1, n), 1e-6);
     });
@@ -132,7 +132,7 @@ TEST(ReferencePaths, BeyondTheCriticalAngleAllIsReflected) {
   scene.recursion_depth = 2;
   add_sheet(scene, 0, add_material(scene, glass(1.5f)));
   add_sheet(scene, 1, add_material(scene, black()));
-  const ReferencePicture picture = render_reference(scene, kWidth, kWidth);
+  const ReferencePicture picture = render_reference(scene, kPathWidth, kPathWidth);
   std::size_t total = 0, partial = 0;
   for_each_pixel(scene, picture, [&](std::size_t i, const DVec3& dir) {
     const double sine = std::sqrt(1.0 - dir.z * dir.z);
@@ -147,8 +147,8 @@ TEST(ReferencePaths, BeyondTheCriticalAngleAllIsReflected) {
   });
   EXPECT_GT(total, 1000u);
   EXPECT_GT(partial, 500u);
-  EXPECT_EQ(picture.counts.reflected, kWidth * kWidth);
-  EXPECT_LE(picture.counts.refracted, kWidth * kWidth - total);
+  EXPECT_EQ(picture.counts.reflected, kPathWidth * kPathWidth);
+  EXPECT_LE(picture.counts.refracted, kPathWidth * kPathWidth - total);
 }
 
 // Jitter of an area light tells a path's number: straight down, through glass (path 3) or glass seen from beneath

@@ -50,7 +50,7 @@ std::map<std::string, Opinion> opinions(const std::string& text) {
 }
 
 // The page has one decimal, the table of operations two.
-constexpr double kLastDigit = 0.0601;
+constexpr double kPageLastDigit = 0.0601;
 
 // The instructions themselves come from tools/calibrate/second_opinion/run; that needs a cross compiler.
 TEST(CalibrateReadme, SecondOpinionStandsBesideTheTableOfToday) {
@@ -64,8 +64,8 @@ TEST(CalibrateReadme, SecondOpinionStandsBesideTheTableOfToday) {
     SCOPED_TRACE(name + ": run tools/calibrate/second_opinion/run and write the README's table anew");
     const auto row = rows.find(name);
     ASSERT_NE(row, rows.end());
-    EXPECT_NEAR(row->second.cycles, cost.cycles, kLastDigit);
-    EXPECT_NEAR(row->second.operations, cost.even + cost.odd, kLastDigit);
+    EXPECT_NEAR(row->second.cycles, cost.cycles, kPageLastDigit);
+    EXPECT_NEAR(row->second.operations, cost.even + cost.odd, kPageLastDigit);
     // Instructions and operations are rounded, the ratio is that of the figures behind them.
     EXPECT_NEAR(row->second.ratio, row->second.instructions / row->second.operations,
                 0.006 + 0.06 * (1 + row->second.ratio) / row->second.operations);

@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 using Rows = std::vector<std::vector<std::string>>;
 
-std::vector<std::string> tiny(const std::string& output, const std::string& threads) {
+std::vector<std::string> tiny_accuracies(const std::string& output, const std::string& threads) {
   // The folder itself holds no scans, so that GRIDIRON_SCENES does not matter.
   return {"experiment", "accuracy", "-o", output, "--scenes", ".", "--size", "64x48", "--threads", threads, "--quiet"};
 }
@@ -151,7 +151,7 @@ TEST(AccuracyExperiment, FilesDoNotDependOnThreads) {
   fs::create_directory(folder.path("out3"));
   folder.write("out3/pareto_t_bunny.svg", "earlier");
   folder.write("out3/table3_fps.csv", "of another experiment");
-  run_twice(folder, tiny);
+  run_twice(folder, tiny_accuracies);
   EXPECT_TRUE(fs::remove(folder.path("out3") / "table3_fps.csv"));
   const std::vector<std::string> known = experiment::accuracy_file_names();
   const std::set<std::string> names = expect_same_files(folder, known);
@@ -221,7 +221,8 @@ TEST(AccuracyExperiment, AnOutputThatCannotBeIsToldFirst) {
   const TemporaryFolder folder("bunny.ply", "nonsense");
   for (const char* name : {"index.html", "host_prices.csv", "errors_grid_bunny.svg", "prices_conference_2.txt"}) {
     fs::create_directories(folder.path("out") / name);
-    expect_failure(folder, tiny("out", "1"), 1, std::string("out/") + name + ": cannot write: it is a folder");
+    expect_failure(folder, tiny_accuracies("out", "1"), 1,
+                   std::string("out/") + name + ": cannot write: it is a folder");
     fs::remove_all(folder.path("out"));
   }
 }
@@ -229,7 +230,7 @@ TEST(AccuracyExperiment, AnOutputThatCannotBeIsToldFirst) {
 // Where there is a scan nothing is made.
 TEST(AccuracyExperiment, ScansAreTheViews) {
   const TemporaryFolder folder("bunny.ply", make_torus(24, 16, 1.0f, 0.4f));
-  std::vector<std::string> arguments = tiny("out", "2");
+  std::vector<std::string> arguments = tiny_accuracies("out", "2");
   arguments.pop_back();
   const ProgramResult result = run_program(folder.folder(), arguments);
   ASSERT_EQ(result.exit_code, 0) << result.err;

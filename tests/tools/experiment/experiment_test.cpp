@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> tiny(const std::string& output, const std::string& threads) {
+std::vector<std::string> tiny_paper(const std::string& output, const std::string& threads) {
   // The folder itself holds no scans, so that GRIDIRON_SCENES does not matter.
   return {"experiment", "paper",     "-o",   output,      "--scenes", ".",      "--size",
           "64x48",      "--largest", "6000", "--threads", threads,    "--quiet"};
@@ -229,7 +229,7 @@ TEST(Experiment, FilesDoNotDependOnThreads) {
   fs::create_symlink("../kept.svg", folder.path("out3") / "sweep_latency_horse.svg");
   folder.write("kept.svg", "not of the folder");
   folder.write("out3/sweep_latency_mine.svg", "somebody's");
-  run_twice(folder, tiny);
+  run_twice(folder, tiny_paper);
   EXPECT_EQ(read_file(folder.path("kept.svg")), "not of the folder");
   EXPECT_TRUE(fs::remove(folder.path("out3") / "sweep_latency_mine.svg"));
   const std::vector<std::string> known = experiment::paper_file_names();
@@ -278,18 +278,18 @@ TEST(Experiment, AnOutputThatCannotBeIsToldFirst) {
   for (const char* name : {"index.html", "sweep_local_store.csv", "fig6_grid_6_cores.svg", "sweep_latency_bunny.svg"}) {
     const fs::path obstacle = folder.path("out") / name;
     fs::create_directories(obstacle);
-    expect_failure(folder, tiny("out", "1"), 1, std::string("out/") + name + ": cannot write: it is a folder");
+    expect_failure(folder, tiny_paper("out", "1"), 1, std::string("out/") + name + ": cannot write: it is a folder");
     fs::remove_all(folder.path("out"));
   }
   // A folder that was there stays, with what lies in it.
   fs::create_directories(folder.path("out") / "index.html");
-  (void)run_program(folder.folder(), tiny("out", "1"));
+  (void)run_program(folder.folder(), tiny_paper("out", "1"));
   EXPECT_EQ(names_in(folder.path("out")), std::set<std::string>{"index.html"});
 }
 
 TEST(Experiment, AWrongScanLeavesNothing) {
   const TemporaryFolder folder("bunny.ply", "ply\nformat ascii 1.0\nnonsense\n");
-  expect_failure(folder, tiny("out", "1"), 1, "bunny.ply:3");
+  expect_failure(folder, tiny_paper("out", "1"), 1, "bunny.ply:3");
   EXPECT_EQ(folder.names(), std::vector<std::string>{"bunny.ply"});
 }
 

@@ -22,7 +22,7 @@ using experiment::SolidPrice;
 using experiment::TracedRay;
 
 constexpr std::uint32_t kRayEffects = kPointShadows | kAreaLights | kAmbientOcclusion | kReflection | kRefraction;
-constexpr EffectFrameRequest kSmall{.width = 48, .height = 48};
+constexpr EffectFrameRequest kSmallFrame{.width = 48, .height = 48};
 
 TEST(SecondaryScenes, CastOneKindOfRays) {
   const EffectScene gallery = experiment::make_effect_scene("gallery");
@@ -43,8 +43,8 @@ TEST(SecondaryRays, AreThoseThatTheFrameCounts) {
   for (const NamedRayKind& kind : experiment::kRayKinds) {
     SCOPED_TRACE(kind.key);
     const EffectScene scene = experiment::with_rays_of(experiment::make_effect_scene("gallery"), kind.kind);
-    const EffectFrame frame = experiment::render_effect_frame(scene, kSmall);
-    experiment::PreparedEffectFrame prepared(scene, kSmall);
+    const EffectFrame frame = experiment::render_effect_frame(scene, kSmallFrame);
+    experiment::PreparedEffectFrame prepared(scene, kSmallFrame);
     std::array<std::uint64_t, std::size(experiment::kRayKinds)> counts{};
     std::size_t hits = 0;
     const std::vector<TracedRay> rays = experiment::trace_secondary_rays(prepared);
@@ -62,7 +62,7 @@ TEST(SecondaryRays, AreThoseThatTheFrameCounts) {
     EXPECT_LT(hits, rays.size());
     // Asked again they get the same answers.
     const experiment::RayTree tree(prepared);
-    const std::vector<experiment::RayHit> again = tree.nearest(rays, kSmall.accuracy);
+    const std::vector<experiment::RayHit> again = tree.nearest(rays, kSmallFrame.accuracy);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       EXPECT_EQ(again[i].id == kNoTriangle, rays[i].id == kNoTriangle);
       if (!named(rays[i].kind).wants_any_hit) {
@@ -78,7 +78,7 @@ TEST(SecondaryRays, DoNotGoAstrayInSolids) {
     std::size_t far_rays = 0;
     for (const Solid& solid : experiment::make_solids(kind.kind)) {
       SCOPED_TRACE(std::string(kind.key) + " in " + solid.scene.key);
-      const SolidPrice price = experiment::price_solid(solid, kSmall);
+      const SolidPrice price = experiment::price_solid(solid, kSmallFrame);
       EXPECT_EQ(price.enclosed.leaks(), 0u);
       EXPECT_EQ(price.at_edges.leaks(), 0u);
       EXPECT_EQ(price.open.false_hits, 0u);
@@ -109,7 +109,7 @@ TEST(SecondaryRays, LeaksAreDetected) {
     }
     geometry.triangles.resize(kept);
     geometry.triangle_materials.resize(kept);
-    const SolidPrice price = experiment::price_solid(room, kSmall);
+    const SolidPrice price = experiment::price_solid(room, kSmallFrame);
     EXPECT_GT(price.enclosed.leaks(), 0u);
     EXPECT_GT(price.at_edges.leaks(), 0u);
   }
@@ -117,7 +117,7 @@ TEST(SecondaryRays, LeaksAreDetected) {
 
 // Floats that are trusted leave no gap between triangles that share an edge.
 TEST(SecondaryRays, FastLeaksNowhere) {
-  EffectFrameRequest request = kSmall;
+  EffectFrameRequest request = kSmallFrame;
   request.accuracy = Accuracy::kFast;
   for (const NamedRayKind& kind : experiment::kRayKinds) {
     const SolidPrice price = experiment::price_solid(experiment::make_solids(kind.kind).front(), request);
@@ -133,7 +133,7 @@ TEST(SecondaryRays, SelfHitsAreDetected) {
     ASSERT_FALSE(body.is_room);
     std::vector<Vec3>& vertices = body.scene.description.geometry.vertices;
     for (std::size_t i = 0; i < vertices.size(); i += 7) vertices[i] *= 0.8f;
-    EXPECT_GT(experiment::price_solid(body, kSmall).open.false_hits, 0u) << named(kind).key;
+    EXPECT_GT(experiment::price_solid(body, kSmallFrame).open.false_hits, 0u) << named(kind).key;
   }
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using tool::SceneDescription;
 
-const std::filesystem::path kFolder = std::filesystem::path(GRIDIRON_SOURCE_DIR) / "scenes";
+const std::filesystem::path kSceneFolder = std::filesystem::path(GRIDIRON_SOURCE_DIR) / "scenes";
 
 // The effects that a scene's lights, materials and settings call for, computed in the simplest way.
 std::set<std::string> called_for(const SceneDescription& scene) {
@@ -48,11 +48,12 @@ TEST(SceneFiles, EachCallsForItsEffectAndNoOther) {
         "smooth normals", "multisampling"}},
   };
   std::size_t files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) files += entry.path().extension() == ".nff";
+  for (const auto& entry : std::filesystem::directory_iterator(kSceneFolder))
+    files += entry.path().extension() == ".nff";
   EXPECT_EQ(files, std::size(cases)) << "a scene that this test does not know";
   for (const Case& of : cases) {
     SCOPED_TRACE(of.name);
-    const SceneDescription scene = tool::read_scene_text(kFolder / (std::string(of.name) + ".nff"));
+    const SceneDescription scene = tool::read_scene_text(kSceneFolder / (std::string(of.name) + ".nff"));
     expect_sound(scene);
     EXPECT_EQ(called_for(scene), of.effects);
     EXPECT_TRUE(scene.notes.empty()) << scene.notes[0].text;
@@ -61,7 +62,7 @@ TEST(SceneFiles, EachCallsForItsEffectAndNoOther) {
 
 TEST(SceneFiles, TheSkyIsItsMakers) {
   for (std::uint32_t face = 0; face < 6; ++face) {
-    const std::filesystem::path path = kFolder / (std::string("sky_") + scene_makers::kFaceNames[face] + ".pfm");
+    const std::filesystem::path path = kSceneFolder / (std::string("sky_") + scene_makers::kFaceNames[face] + ".pfm");
     std::ifstream file(path, std::ios::binary);
     const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     EXPECT_EQ(bytes, scene_makers::make_sky_face(face, 16)) << path;

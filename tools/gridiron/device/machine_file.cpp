@@ -22,7 +22,7 @@ using sim::MachineProfile;
 constexpr std::size_t kMaxFileBytes = 1 << 20;
 constexpr std::size_t kMaxLineBytes = 1000;
 constexpr std::size_t kMaxNameBytes = 64;
-constexpr const char* kExpected = "expected a machine file: text as 'gridiron machines cell-ps3' prints it";
+constexpr const char* kExpectedMachine = "expected a machine file: text as 'gridiron machines cell-ps3' prints it";
 constexpr std::string_view kEditedSuffix = "-edited";
 
 // A profile and the text it points to.
@@ -289,7 +289,7 @@ class Reader {
 }  // namespace
 
 Machine read_machine_file(const std::filesystem::path& path) {
-  const InputFile file = read_text_file(path, kExpected, kMaxFileBytes);
+  const InputFile file = read_text_file(path, kExpectedMachine, kMaxFileBytes);
   return Reader(path).read({reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()});
 }
 

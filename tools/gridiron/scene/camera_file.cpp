@@ -13,7 +13,7 @@ namespace gridiron::tool {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = 1 << 16;
-constexpr const char* kExpected = "expected a camera file: text with lines 'eye x y z' and 'at x y z'";
+constexpr const char* kExpectedCamera = "expected a camera file: text with lines 'eye x y z' and 'at x y z'";
 
 struct Line {
   const std::filesystem::path& path;
@@ -47,7 +47,7 @@ std::vector<float> parse_values(const std::vector<std::string>& words, std::size
 }  // namespace
 
 ViewRequest read_camera_file(const std::filesystem::path& path) {
-  const InputFile file = read_text_file(path, kExpected, kMaxFileBytes);
+  const InputFile file = read_text_file(path, kExpectedCamera, kMaxFileBytes);
   std::istringstream stream(std::string(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()));
   ViewRequest view;
   std::size_t number = 0;

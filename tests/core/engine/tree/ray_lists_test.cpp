@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "core/lane_types.h"
 #include "numeric/rounding_scope.h"
 #include "support/memory_tree.h"
 #include "support/test_mesh.h"
@@ -142,8 +143,7 @@ std::vector<Answer> answers_by_terms(MemoryTree& tree, const std::vector<Ray>& r
   WorkCounters work;
   return answers<L, ListMemory<Rays, Spare, false, true>>(tree, rays, any_hit, work);
 }
-using AllLanes = testing::Types<Lanes<1>, Lanes<4>, Lanes<8>, Lanes<16>>;
-TYPED_TEST_SUITE(RayListsTest, AllLanes);
+TYPED_TEST_SUITE(RayListsTest, ListLaneTypes);
 
 TYPED_TEST(RayListsTest, FindWhatExactArithmeticFinds) {
   const TestMesh torus = make_torus(24, 12, 1.0f, 0.35f), soup = make_random_soup(600, 0.3f, 2);

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "core/lane_types.h"
 #include "numeric/rounding_scope.h"
 #include "support/memory_tree.h"
 #include "support/test_mesh.h"
@@ -197,8 +198,7 @@ const Camera kCameras[] = {
 
 template <class L>
 class TileTracerTest : public testing::Test {};
-using TiledLanes = testing::Types<Lanes<1>, Lanes<4>, Lanes<8>, Lanes<16>>;
-TYPED_TEST_SUITE(TileTracerTest, TiledLanes);
+TYPED_TEST_SUITE(TileTracerTest, ListLaneTypes);
 
 TYPED_TEST(TileTracerTest, EveryPixelIsThatOfExactArithmetic) {
   for (const NamedMesh& tested : hard_meshes()) {
