@@ -78,7 +78,8 @@ class CompletionOrders : public testing::TestWithParam<std::size_t> {
     if (transfer.purpose == Purpose::kRun) first = kFirstTriangleTag, depth = settings.triangle_depth;
     if (transfer.purpose == Purpose::kRecord) first = kFirstTriangleTag, depth = settings.fetch_depth;
     const bool is_in_cache = transfer.purpose == Purpose::kBlock || transfer.purpose == Purpose::kRun;
-    if (!case_.scene.has_effects() || !is_in_cache) {
+    const bool goes_through_tree = case_.scene.has_effects() || settings.engine == EngineId::kTree;
+    if (!goes_through_tree || !is_in_cache) {
       return static_cast<std::uint8_t>(first + (transfer.tag - first + 1) % depth);
     }
     // Nodes and leaves lie where there is room, so their tags are in no order.

@@ -15,6 +15,7 @@
 #define LISTS 6        // TreeSource: nodes and leaves for lists of rays
 #define GATHER 7       // gather_records
 #define SPILL 8        // RayQueue
+#define EYES 9         // TileRenderer with TreeSource: tiles through the tree
 
 // BREAK: nothing, or one thing done wrong. Each must be found; 13 is no wrong access but a standstill.
 #define NOTHING 0
@@ -46,7 +47,8 @@
 #define HAS_TRIANGLES (LEVEL == TRIANGLES || LEVEL == DRIVER || LEVEL == TILE)
 #define HAS_BLOCKS (LEVEL == CELL_BLOCKS || LEVEL == DRIVER || LEVEL == TILE)
 #define HAS_DRIVER (HAS_TRIANGLES || HAS_BLOCKS)
-#define HAS_OUTPUT (LEVEL == OUTPUT || LEVEL == TILE)
+#define HAS_OUTPUT (LEVEL == OUTPUT || LEVEL == TILE || LEVEL == EYES)
+#define HAS_TREE (LEVEL == LISTS || LEVEL == EYES)
 
 #if DEPTH > K_MACRO_TAG_COUNT || DEPTH > K_TRIANGLE_TAG_COUNT || DEPTH > K_OUTPUT_TAG_COUNT
 #error "more buffers than the level has tags"
@@ -55,7 +57,7 @@
 #error "the model's arrays are made for 32 tags"
 #endif
 
-#if LEVEL == LISTS
+#if HAS_TREE
 // Slots for nodes and leaves, DEPTH of them, or as many as the code's. There are fewer tags, which go round; OWN_TAGS:
 // as many.
 #ifndef SLOTS
@@ -67,7 +69,12 @@
 #define CHILD_TAGS ((SLOTS + 1) / 2)
 #endif
 #define SETUP_BUFFER SLOTS
+#define TILE_OF(slot) (SLOTS + 1 + (slot))
+#if LEVEL == EYES
+#define BUFFERS (SLOTS + 1 + DEPTH)
+#else
 #define BUFFERS (SLOTS + 1)
+#endif
 #else
 // Buffers: blocks, triangles, tiles, and the place that setup transfers go to.
 #define BLOCK(slot) (slot)
@@ -113,7 +120,7 @@ byte ranked, pending_count;
 byte total;          // commands that were started and not waited for
 byte issued[32];     // ... by tag
 byte moving[32];     // those of them that the engine has not ended
-#if LEVEL == LISTS
+#if HAS_TREE
 byte moving_of[BUFFERS];  // ... by buffer
 #else
 byte owner[32];      // buffer whose bytes a tag's pending commands move
@@ -174,9 +181,9 @@ inline platform_wait(tag) {
   atomic {
     CALLED(WAIT_CALL, tag);
     moving[tag] == 0;
-#if LEVEL == LISTS
+#if HAS_TREE
     for (t_ : 0 .. BUFFERS - 1) {
-      if :: busy[t_] == (tag) + 1 -> busy[t_] = 0 :: else fi
+      if :: busy[t_] == (tag) + 1 -> busy[t_] = 0; is_put[t_] = false; sent[t_] = 0 :: else fi
     }
     t_ = 0;
     total = total - issued[tag];
@@ -191,13 +198,13 @@ inline platform_wait(tag) {
   }
 }
 
-// P::get and P::put of one piece. A tag's pending commands are those of one buffer, but in LISTS; a buffer in flight or
-// in use is not started on; there is room in the queue.
+// P::get and P::put of one piece. A tag's pending commands are those of one buffer, but of the tree's slots; a buffer in
+// flight or in use is not started on; there is room in the queue.
 inline platform_start(put, buffer, tag, is_first) {
   atomic {
     CALLED((put -> PUT_CALL : GET_CALL), tag);
     assert(total < queue_depth);
-#if LEVEL != LISTS
+#if !HAS_TREE
     assert(issued[tag] == 0 || owner[tag] == buffer);
 #endif
     assert(busy[buffer] == 0 || (busy[buffer] == (tag) + 1 && !(is_first)));
@@ -209,11 +216,11 @@ inline platform_start(put, buffer, tag, is_first) {
     if :: !(put) -> left[buffer]-- :: else fi;
 #else
     moving[tag]++;
-#if LEVEL == LISTS
+#if HAS_TREE
     moving_of[buffer]++;
 #endif
 #endif
-#if LEVEL != LISTS
+#if !HAS_TREE
     owner[tag] = buffer;
 #endif
     busy[buffer] = (tag) + 1;
@@ -224,13 +231,17 @@ inline platform_start(put, buffer, tag, is_first) {
 }
 
 // The engine moves the bytes of one pending command of a tag: those of a put are read now, those of a get arrive.
-#if LEVEL == LISTS
+#if HAS_TREE
 inline end_one_of(buffer) {
   d_step {
     moving_of[buffer] != 0;
     assert(!in_use[buffer]);
-    left[buffer]--;
-    if :: left[buffer] == 0 -> content[buffer] = wanted[buffer]; wanted[buffer] = 0 :: else fi;
+    if
+    :: is_put[buffer] -> assert(content[buffer] == sent[buffer])
+    :: else ->
+      left[buffer]--;
+      if :: left[buffer] == 0 -> content[buffer] = wanted[buffer]; wanted[buffer] = 0 :: else fi
+    fi;
     moving_of[buffer]--;
     moving[busy[buffer] - 1]--
   }
@@ -510,95 +521,9 @@ inline run_driver() {
 }
 #endif
 
-// --- TileRenderer: core/gridiron/render/tile_renderer.h ----------------------------------------------------------
-
-#if HAS_OUTPUT
-byte output_slot, tile_commands;  // most commands of one tile
-byte tile_serial;
-bool waits_for_output;
-
-// share_queue.
-inline share_queue() {
-  d_step {
-    waits_for_output = DEPTH == 1 || tile_commands * DEPTH + K_LEAST_INPUT_COMMANDS > queue_depth;
-    if
-    :: waits_for_output
-#if BREAK == SMALL_SHARE
-    :: else -> output_share = tile_commands * (DEPTH - 1) - 1
-#else
-    :: else -> output_share = tile_commands * DEPTH
-#endif
-    fi
-  }
-}
-
-// render_tile.
-inline render_tile() {
-  atomic {
-    drawn = output_slot;
-    output_slot = (output_slot + 1) % DEPTH
-  }
-#if BREAK != SOURCE_CHANGED && !(BREAK == NO_WAIT && LEVEL == OUTPUT)
-  wait(WAITED_TAG(K_FIRST_OUTPUT_TAG, drawn));
-#endif
-  begin_use(TILE_OF(PLACE(drawn)), content[TILE_OF(PLACE(drawn))]);
-#if HAS_DRIVER
-  do
-  :: true -> DECIDED(packet); run_driver()
-  :: true -> break
-  od;
-  skip;
-#else
-  // The tracing's transfers, as one that may fill what the output leaves of the queue.
-  if
-  :: true -> get(SETUP_BUFFER, K_SETUP_TAG, 0, K_LEAST_INPUT_COMMANDS + MOST_TILE_COMMANDS + 1); wait(K_SETUP_TAG)
-  :: true
-  fi;
-#endif
-  d_step {
-    content[TILE_OF(PLACE(drawn))] = tile_serial;
-    tile_serial = (tile_serial + 1) % SERIALS;
-    in_use[TILE_OF(PLACE(drawn))] = false
-  }
-#if BREAK == SOURCE_CHANGED
-  wait(WAITED_TAG(K_FIRST_OUTPUT_TAG, drawn));
-#endif
-  put(TILE_OF(PLACE(drawn)), TAG_OF(K_FIRST_OUTPUT_TAG, drawn), tile_commands);  // put_tile
-  if
-  :: waits_for_output -> wait(TAG_OF(K_FIRST_OUTPUT_TAG, drawn))
-  :: else
-  fi;
-  drawn = 0
-}
-
-// run, and finish.
-inline run_tiles() {
-  get_now();  // the frame
-  if
-  :: true -> get_now()  // the macrocell table, where it fits
-  :: true
-  fi;
-  share_queue();
-  do
-  :: true -> NOTED(tile); render_tile()
-  :: true -> break
-  od;
-#if BREAK != NO_FINISH
-  drawn = 0;
-  do
-  :: drawn < DEPTH ->
-    wait(TAG_OF(K_FIRST_OUTPUT_TAG, output_slot));
-    output_slot = (output_slot + 1) % DEPTH;
-    drawn++
-  :: else -> break
-  od
-#endif
-}
-#endif
-
 // --- TreeSource: core/gridiron/engine/tree/tree_source.h -----------------------------------------------------------------
 
-#if LEVEL == LISTS
+#if HAS_TREE
 // What was fetched stays in its slot, to be used again, until the slot is fetched anew. Which slot makes room is a free
 // choice; in core it is one of a set.
 mtype = { kNothing, kNode, kLeaf };
@@ -655,9 +580,22 @@ inline choose_child(i) {
   fi;
   i < SLOTS
 }
+// One that the next call may be a wait for.
+inline choose_other(i) {
+  d_step {
+    c_code { now.called = now.position < kTraceCount ? kTrace[now.position] : 255; }
+    i = 0;
+    do
+    :: i < SLOTS && !(is_pending[i] && tag_at[i] == called) -> i++
+    :: else -> break
+    od
+  }
+  i < SLOTS
+}
 #else
 #define choose_slot(i) select(i : 0 .. SLOTS - 1)
 #define choose_child(i) select(i : 0 .. SLOTS - 1)
+#define choose_other(i) select(i : 0 .. SLOTS - 1)
 #endif
 
 #ifdef OWN_TAGS
@@ -687,14 +625,31 @@ inline start_child(i) {
   get(i, tag_at[i], 1 + serial[i], PIECES)
 }
 
-inline run_lists() {
-  d_step {
-    for (t_ : 0 .. SLOTS - 1) { has[t_] = kNothing }
-    t_ = 0
-  }
-#ifdef TRACE
-  select(fetched : 0 .. CHILD_TAGS - 1);  // what other stages have fetched
+// What is done with a child: triangles for ties. A tile's hits also need those of other leaves at hand.
+inline use_child() {
+  begin_use(slot, 1 + serial[slot]);
+  do
+  :: has[slot] == kLeaf -> NOTED(tie); get_now()  // comes_before, record
+#if LEVEL == EYES
+  :: has[slot] == kLeaf ->
+    DECIDED(record);
+    choose_other(other);
+    if
+    :: other != slot && has[other] == kLeaf ->
+      if :: is_pending[other] -> arrive(other) :: else fi;
+      begin_use(other, 1 + serial[other]);
+      in_use[other] = false
+    :: else
+    fi;
+    other = 0
 #endif
+  :: true -> break
+  od;
+  in_use[slot] = false
+}
+
+// trace of lists; steps of the tiles that take turns.
+inline trace_children() {
   do
   :: true -> DECIDED(ahead); start_child(slot); slot = 0  // ahead: a child that is not at hand
   :: true ->                                    // node, leaf
@@ -707,14 +662,12 @@ inline run_lists() {
     :: has[slot] == kNothing
     :: else ->
       if :: is_pending[slot] -> arrive(slot) :: else fi;
-      begin_use(slot, 1 + serial[slot]);
-      do
-      :: has[slot] == kLeaf -> NOTED(tie); get_now()  // comes_before
-      :: true -> break
-      od;
-      in_use[slot] = false
+      use_child()
     fi;
     slot = 0
+#if LEVEL == EYES
+  :: true -> DECIDED(record); get_now()
+#endif
   :: true -> break
   od;
   slot = 0;  // finish
@@ -725,6 +678,120 @@ inline run_lists() {
   :: else -> break
   od;
   slot = 0
+}
+// forget.
+inline forget_children() {
+  d_step {
+    for (t_ : 0 .. SLOTS - 1) { has[t_] = kNothing; content[t_] = GARBAGE; serial[t_] = 0; tag_at[t_] = 0 }
+    t_ = 0;
+    fetched = 0
+  }
+}
+
+#if LEVEL == EYES
+inline trace_eyes() {
+  forget_children();
+  trace_children()
+}
+#else
+inline run_lists() {
+  forget_children();
+#ifdef TRACE
+  select(fetched : 0 .. CHILD_TAGS - 1);  // what other stages have fetched
+#endif
+  trace_children()
+}
+#endif
+#endif
+
+// --- TileRenderer: core/gridiron/render/tile_renderer.h ----------------------------------------------------------
+
+#if HAS_OUTPUT
+byte output_slot, tile_commands;  // most commands of one tile
+byte tile_serial;
+bool waits_for_output;
+
+// share_queue.
+inline share_queue() {
+  d_step {
+    waits_for_output = DEPTH == 1 || tile_commands * DEPTH + K_LEAST_INPUT_COMMANDS > queue_depth;
+    if
+    :: waits_for_output
+#if BREAK == SMALL_SHARE
+    :: else -> output_share = tile_commands * (DEPTH - 1) - 1
+#else
+    :: else -> output_share = tile_commands * DEPTH
+#endif
+    fi
+  }
+}
+
+// render_tile.
+inline render_tile() {
+  atomic {
+    drawn = output_slot;
+    output_slot = (output_slot + 1) % DEPTH
+  }
+#if BREAK != SOURCE_CHANGED && !(BREAK == NO_WAIT && LEVEL == OUTPUT)
+  wait(WAITED_TAG(K_FIRST_OUTPUT_TAG, drawn));
+#endif
+  begin_use(TILE_OF(PLACE(drawn)), content[TILE_OF(PLACE(drawn))]);
+#if HAS_DRIVER
+  do
+  :: true -> DECIDED(packet); run_driver()
+  :: true -> break
+  od;
+  skip;
+#elif LEVEL == EYES
+  trace_eyes();
+#else
+  // The tracing's transfers, as one that may fill what the output leaves of the queue.
+  if
+  :: true -> get(SETUP_BUFFER, K_SETUP_TAG, 0, K_LEAST_INPUT_COMMANDS + MOST_TILE_COMMANDS + 1); wait(K_SETUP_TAG)
+  :: true
+  fi;
+#endif
+  d_step {
+    content[TILE_OF(PLACE(drawn))] = tile_serial;
+    tile_serial = (tile_serial + 1) % SERIALS;
+    in_use[TILE_OF(PLACE(drawn))] = false
+  }
+#if BREAK == SOURCE_CHANGED
+  wait(WAITED_TAG(K_FIRST_OUTPUT_TAG, drawn));
+#endif
+  put(TILE_OF(PLACE(drawn)), TAG_OF(K_FIRST_OUTPUT_TAG, drawn), tile_commands);  // put_tile
+  if
+  :: waits_for_output -> wait(TAG_OF(K_FIRST_OUTPUT_TAG, drawn))
+  :: else
+  fi;
+  drawn = 0
+}
+
+// run, and finish.
+inline run_tiles() {
+  get_now();  // the frame
+  if
+  :: true -> get_now()  // the macrocell table, where it fits; of a tree its record, then its first nodes
+  :: true
+  fi;
+#if LEVEL == EYES
+  get_now();
+#endif
+  share_queue();
+  do
+  :: true -> NOTED(tile); render_tile()
+  :: true -> break
+  od;
+#if BREAK != NO_FINISH
+  drawn = 0;
+  do
+  :: drawn < DEPTH ->
+    wait(TAG_OF(K_FIRST_OUTPUT_TAG, output_slot));
+    output_slot = (output_slot + 1) % DEPTH;
+    drawn++
+  :: else -> break
+  od
+#endif
 }
 #endif
 
@@ -874,6 +941,9 @@ inline run_queue() {
 
 active proctype core() {
   byte pieces, piece, oldest, slot;
+#if LEVEL == EYES
+  byte other;
+#endif
 #if HAS_OUTPUT
   byte drawn;
 #endif
@@ -938,16 +1008,16 @@ active proctype core() {
 #else
 #define ENDS(first) END(first) END(first + 1) END(first + 2) END(first + 3)
 #endif
-#if LEVEL == LISTS
+#if HAS_TREE
 #define END_OF(buffer) :: end_one_of(buffer)
 #if DEPTH == 1
-#define ENDS_OF_SLOTS END_OF(0)
+#define ENDS_FROM(first) END_OF(first)
 #elif DEPTH == 2
-#define ENDS_OF_SLOTS END_OF(0) END_OF(1)
+#define ENDS_FROM(first) END_OF(first) END_OF(first + 1)
 #elif DEPTH == 3
-#define ENDS_OF_SLOTS END_OF(0) END_OF(1) END_OF(2)
+#define ENDS_FROM(first) END_OF(first) END_OF(first + 1) END_OF(first + 2)
 #else
-#define ENDS_OF_SLOTS END_OF(0) END_OF(1) END_OF(2) END_OF(3)
+#define ENDS_FROM(first) END_OF(first) END_OF(first + 1) END_OF(first + 2) END_OF(first + 3)
 #endif
 #endif
 active proctype engine() {
@@ -962,9 +1032,12 @@ progress_scene:
 #else
   :: yields -> yields = false
 #endif
-#if LEVEL == LISTS
+#if HAS_TREE
   END_OF(SETUP_BUFFER)
-  ENDS_OF_SLOTS
+  ENDS_FROM(0)
+#if LEVEL == EYES
+  ENDS_FROM(SLOTS + 1)
+#endif
 #else
   END(K_SETUP_TAG)
 #endif
@@ -974,7 +1047,7 @@ progress_scene:
 #if HAS_TRIANGLES || LEVEL == GATHER
   ENDS(K_FIRST_TRIANGLE_TAG)
 #endif
-#if HAS_OUTPUT
+#if HAS_OUTPUT && !HAS_TREE
   ENDS(K_FIRST_OUTPUT_TAG)
 #endif
   od

@@ -47,7 +47,9 @@ OrderFrame::OrderFrame(const OrderScene& scene, const OrderSettings& settings) {
   const GridParameters grid{.lambda = scene.lambda,
                             .macro_width = 2,
                             .format = TriangleFormat::kVertices,
-                            .leaf_triangles = EffectOrderLayout::kLeafTriangles};
+                            .leaf_triangles = EffectOrderLayout::kLeafTriangles,
+                            .has_tree = settings.engine == EngineId::kTree};
+  static_assert(TileOrderLayout::kLeafTriangles == EffectOrderLayout::kLeafTriangles);
   GridNeed need{};
   require(count_scene_image(scene.mesh.view(), grid, need, called_for));
   const auto image = memory_.allocate(need.image_bytes).value();
@@ -57,7 +59,9 @@ OrderFrame::OrderFrame(const OrderScene& scene, const OrderSettings& settings) {
   SceneImageError error;
   require(open_scene_image(image.bytes, view, error));
   // 2. Planes, the second after the first, and memory for rays that wait.
-  const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, 8);
+  const std::uint32_t tile_width =
+      settings.engine == EngineId::kTree ? TileOrderLayout::kTileWidth : OrderLayout::kTileWidth;
+  const std::uint64_t plane_bytes = output_plane_bytes(settings.width, settings.height, tile_width);
   planes_ = memory_.allocate(plane_bytes * (settings.wants_ids ? 2 : 1), 4096).value();
   if (scene.recursion_depth > 1) {
     spill_ = memory_.allocate(spill_bytes(scene.recursion_depth), kSpillAlignment).value();
@@ -67,8 +71,9 @@ OrderFrame::OrderFrame(const OrderScene& scene, const OrderSettings& settings) {
   FrameSettings frame{.camera = {.eye = scene.eye},
                       .width = settings.width,
                       .height = settings.height,
-                      .tile_width = 8,
+                      .tile_width = tile_width,
                       .shading = scene.has_effects() ? Shading::kScene : Shading::kSimple,
+                      .engine = settings.engine,
                       .output_depth = settings.output_depth,
                       .macro_depth = settings.macro_depth,
                       .triangle_depth = settings.triangle_depth,
@@ -81,7 +86,9 @@ OrderFrame::OrderFrame(const OrderScene& scene, const OrderSettings& settings) {
   frame_ = record.address;
   tile_count_ = made.tiles_x * made.tiles_y;
   limits_.queue_depth = settings.queue_depth;
-  if (scene.has_effects()) {
+  if (settings.engine == EngineId::kTree) {
+    tile_store_ = std::make_unique<LocalStore<TileOrderLayout>>();
+  } else if (scene.has_effects()) {
     effect_store_ = std::make_unique<LocalStore<EffectOrderLayout>>();
   } else {
     packet_store_ = std::make_unique<LocalStore<PacketOrderLayout>>();
@@ -89,6 +96,7 @@ OrderFrame::OrderFrame(const OrderScene& scene, const OrderSettings& settings) {
 }
 
 OrderOutcome OrderFrame::run(const OrderPlan& plan) {
+  if (tile_store_ != nullptr) return run_layout(*tile_store_, plan);
   return effect_store_ != nullptr ? run_layout(*effect_store_, plan) : run_layout(*packet_store_, plan);
 }
 

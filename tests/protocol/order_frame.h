@@ -52,9 +52,27 @@ struct EffectOrderLayout : OrderLayout {
   static constexpr std::uint32_t kMaterialSlots = 2;
   static constexpr std::uint32_t kLightSlots = 5;
 };
-static_assert(kFitsArena<PacketOrderLayout> && kFitsArena<EffectOrderLayout>);
 
-/// What a frame is made of. With effects the second layout renders it.
+/// For eye rays through the tree: two tiles of eight by eight take turns, the root stays for the frame.
+struct TileOrderLayout {
+  using Engine = TileEngine;
+  static constexpr std::uint32_t kEffects = 0;
+  static constexpr std::uint32_t kArenaBytes = 96 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 24 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 6 * 1024;
+  static constexpr std::uint32_t kTileWidth = 16;
+  static constexpr std::uint32_t kPacketWidth = 0;
+  static constexpr std::uint32_t kMaxOutputDepth = 5;
+  static constexpr std::uint32_t kEyeTileWidth = 8;
+  static constexpr std::uint32_t kEyeTurns = 2;
+  static constexpr std::uint32_t kEyeSlots = 16;
+  static constexpr std::uint32_t kEyeTopNodes = 1;
+  static constexpr std::uint32_t kLeafTriangles = 2;
+  static constexpr std::uint32_t kMostLanes = 4;
+};
+static_assert(kFitsArena<PacketOrderLayout> && kFitsArena<EffectOrderLayout> && kFitsArena<TileOrderLayout>);
+
+/// What a frame is made of. With effects the second layout renders it, with EngineId::kTree the third.
 struct OrderScene {
   TestMesh mesh;
   std::vector<Material> materials;
@@ -76,6 +94,7 @@ struct OrderSettings {
   std::uint32_t width = 8, height = 8;
   std::uint32_t output_depth = 1, macro_depth = 1, triangle_depth = 1, fetch_depth = 1;
   std::uint32_t queue_depth = 16;
+  EngineId engine = EngineId::kGrid;
   bool wants_ids = false;  ///< a second plane, so two puts a tile
 };
 
@@ -112,6 +131,7 @@ class OrderFrame {
   PlatformLimits limits_;
   std::unique_ptr<LocalStore<PacketOrderLayout>> packet_store_;
   std::unique_ptr<LocalStore<EffectOrderLayout>> effect_store_;
+  std::unique_ptr<LocalStore<TileOrderLayout>> tile_store_;
 };
 
 }  // namespace gridiron::test

@@ -70,6 +70,22 @@ TestMesh in_one_box(std::uint32_t count) {
   return mesh;
 }
 
+// Triangles in one plane, as near as floats tell, in more leaves than are kept at hand: what was hit before is fetched
+// again to see what is in front.
+OrderScene in_one_plane(std::uint32_t count) {
+  OrderScene scene = soup(count, 1.2f, 3, 2.0f);
+  for (Vec3& vertex : scene.mesh.vertices) vertex.z = 0.3f * vertex.x + 0.2f * vertex.y;
+  return scene;
+}
+
+// A wall before the others, so that much of what is asked for ahead turns out to be hidden.
+OrderScene behind_a_wall(OrderScene scene) {
+  const auto first = static_cast<std::uint32_t>(scene.mesh.vertices.size());
+  scene.mesh.vertices.insert(scene.mesh.vertices.end(), {{-9, -9, 0.4f}, {9, -9, 0.4f}, {0, 12, 0.5f}});
+  scene.mesh.triangles.emplace_back(first, first + 1, first + 2);
+  return scene;
+}
+
 // Triangles one behind the other in sight of few pixels that five lights shine on.
 OrderScene lit(const TestMesh& things) {
   OrderScene scene = with_materials();
@@ -129,6 +145,19 @@ std::vector<OrderCase> order_cases() {
                    {.macro_depth = 4, .triangle_depth = 4, .queue_depth = 5}, {"bbbrr", "bbrrr", "brrrr"}});
   cases.push_back({"tiles", wide(soup(14, 0.6f, 7, 2.0f)),
                    {.width = 40, .output_depth = 4, .macro_depth = 2, .triangle_depth = 1}, {"bbttt", "brttt"}});
+  // Tiles through the tree, two of which take turns; and while the last ones leave.
+  cases.push_back({"turns", soup(40, 0.8f, 3, 2.0f),
+                   {.width = 16, .height = 8, .fetch_depth = 4, .queue_depth = 5, .engine = EngineId::kTree},
+                   {"bbbrr", "brrrr", "rrrrr"}});
+  cases.push_back({"tiles_of_tree", wide(soup(14, 0.6f, 7, 2.0f)),
+                   {.width = 80, .height = 16, .output_depth = 3, .fetch_depth = 1, .engine = EngineId::kTree},
+                   {"rrrtt"}});
+  cases.push_back({"one_plane", in_one_plane(40),
+                   {.width = 16, .height = 8, .fetch_depth = 4, .queue_depth = 5, .engine = EngineId::kTree},
+                   {"bbrrr", "mrrrr"}});
+  cases.push_back({"hidden", behind_a_wall(soup(60, 0.4f, 7, 2.0f)),
+                   {.width = 16, .height = 8, .fetch_depth = 4, .queue_depth = 5, .engine = EngineId::kTree},
+                   {"bbbrr"}});
   // Effects: everything by lists. A root with leaves alone has five of them under way; below a root with nodes, it is
   // the queue that has no room for more.
   cases.push_back({"leaves", lit(in_one_box(12)), {.width = 2, .height = 1, .fetch_depth = 5}, {"rrrrr"}});

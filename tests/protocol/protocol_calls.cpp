@@ -1,5 +1,6 @@
 // Prints what the kernel asks of a simulated core as the model's trace.h: one byte a call, tag + 32 * (0 wait, 1 get,
-// 2 put). TILE: a frame of packets; LISTS, GATHER, SPILL: the part of a frame with effects that is theirs.
+// 2 put). TILE: a frame of packets; EYES: of tiles through the tree; LISTS, GATHER, SPILL: the part of a frame with
+// effects that is theirs.
 //   protocol_calls LEVEL DEPTH QUEUE_DEPTH [forgets]      forgets: without a wait in the middle that ended something
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/order_frame.h"
@@ -8,20 +9,22 @@
 namespace gridiron::test {
 namespace {
 
-static_assert(EffectOrderLayout::kTreeSlots == 16, "check_protocol has the model follow lists with so many slots");
+static_assert(EffectOrderLayout::kTreeSlots == 16 && TileOrderLayout::kEyeSlots == 16,
+              "check_protocol has the model follow the tree with so many slots");
 
 int print_calls(const std::string& level, std::uint32_t depth, std::uint32_t queue_depth, bool forgets) {
   const std::map<std::string, const char*> scenes = {
-      {"TILE", "tiles"}, {"LISTS", "nodes"}, {"GATHER", "surfaces"}, {"SPILL", "spilling"}};
+      {"TILE", "tiles"}, {"EYES", "tiles_of_tree"}, {"LISTS", "nodes"}, {"GATHER", "surfaces"}, {"SPILL", "spilling"}};
   OrderCase one = order_case(scenes.at(level));
   one.settings.queue_depth = queue_depth;
   one.settings.fetch_depth = depth;
+  if (level == "EYES") one.settings.output_depth = depth;
   if (level == "TILE") one.settings.output_depth = one.settings.macro_depth = one.settings.triangle_depth = depth;
   const OrderOutcome outcome = OrderFrame(one.scene, one.settings).run({});
   const auto is_wanted = [&](Stage stage, bool is_spill) {
     if (level == "LISTS") return stage == Stage::kShadow;
     if (level == "GATHER") return stage == Stage::kSurface;
-    return level == "TILE" || is_spill;
+    return level == "TILE" || level == "EYES" || is_spill;
   };
   std::map<std::uint32_t, std::uint32_t> calls, spill_waits, ends;
   for (const LoggedTransfer& transfer : outcome.transfers) {
