@@ -235,7 +235,7 @@ TEST(BvhRenderer, FiguresAddUp) {
   }
   // Cycles are work times its price in 1/1024, core's by the profile and the BVH's by its own table, and commands and
   // waits.
-  const auto prices = sim::work_prices(ps3().work_cycles, kBvhEngine);
+  const auto prices = sim::work_prices(ps3(), kBvhEngine);
   for (std::size_t kind = 0; kind < kWorkKindCount; ++kind) {
     charged += static_cast<double>(frame.work[kind]) * std::round(prices[kind] * 1024) / 1024;
   }

@@ -63,6 +63,7 @@ constexpr sim::WorkKind kNamedAsShared[] = {kBruteForceKinds[0], {BruteForceWork
 static_assert(is_whole_after([](sim::EngineWork&) {}));
 static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.name = ""; }));
 static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.id = sim::kGridEngine.id; }));
+static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.id = sim::kTreeEngine.id; }));
 static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.wait_levels[2] = ""; }));
 static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.prices = engine.prices.first(1); }));
 static_assert(!is_whole_after([](sim::EngineWork& engine) { engine.kinds = engine.kinds.first(1); }));

@@ -22,6 +22,9 @@ TEST(MachineProfile, BuiltInProfilesAreComplete) {
       const bool has_none = is_charged_as_event(WorkId(kind)) || kind >= kGridEngine.kind_count();
       EXPECT_EQ(machine.work_cycles[kind] == 0, has_none) << machine.name << ", kind " << kind;
     }
+    for (std::uint32_t kind = 0; kind < kTileWorkCount; ++kind) {  // instructions of tiles are not known
+      EXPECT_EQ(machine.tile_work_cycles[kind] == 0, counts_instructions(machine)) << machine.name << ", kind " << kind;
+    }
   }
   EXPECT_EQ(find_machine_profile("cell"), nullptr);
 }

@@ -39,7 +39,7 @@ const sim::EngineWork& engine_of(const std::string& configuration) {
 
 std::array<double, kWorkKindCount> prices_of(const std::string& configuration) {
   const sim::EngineWork& engine = engine_of(configuration);
-  return sim::work_prices(sim::find_machine_profile("cell-ps3")->work_cycles, engine);
+  return sim::work_prices(*sim::find_machine_profile("cell-ps3"), engine);
 }
 
 bool is_charged(std::uint32_t kind) {

@@ -583,8 +583,8 @@ std::string bvh_table_text(const Totals& totals) {
 
 std::string tree_table_text(const Totals& totals) {
   std::string text(kTreeTableHead);
-  for (const sim::WorkPrice& price : sim::kTilePrices) {
-    text += table_row(totals[price.id.number()], name_of(price.id.number(), sim::kTreeEngine));
+  for (const sim::WorkKind& kind : sim::kTileWorkKinds) {
+    text += table_row(totals[kind.id.number()], std::string(kind.name));
   }
   return text + "}};\n\n}  // namespace gridiron::sim\n";
 }
@@ -651,9 +651,8 @@ std::string report_of(const Totals& totals, const sim::EngineWork& engine) {
     const KindTotals& t = totals[kind];
     if (t.units == 0 || !is_charged(kind)) continue;
     std::string name = name_of(kind, engine);
-    for (const sim::WorkPrice& price : engine.prices) {
-      if (price.id == WorkId(kind)) name = std::string(engine.name) + ":" + name;
-    }
+    const bool is_of_tiles = engine.id == sim::kTreeEngine.id && kind >= kSharedWorkCount;
+    if (is_of_tiles || engine.has_price(WorkId(kind))) name = std::string(engine.name) + ":" + name;
     text +=
         format("%-20s %8llu %8.1f", name.c_str(), static_cast<unsigned long long>(t.units), per_unit(t, t.cycles()));
     for (const std::uint64_t count : t.operations) text += format(" %8.2f", per_unit(t, count));

@@ -35,13 +35,11 @@ SceneRequest completed(const PackRequest& request, const KnownScene& known) {
   return scene;
 }
 
-// As for a frame of the usual layout in the machine's largest store.
-std::uint32_t leaf_triangles_of(const sim::MachineProfile& machine, const Configuration& configuration,
-                                const SceneInput& input) {
+// Of a frame of the usual layout in the machine's largest store.
+StoreFacts store_of(const sim::MachineProfile& machine, const Configuration& configuration, const SceneInput& input) {
   const sim::StoreSize store = largest_store(machine);
-  return (input.text ? effect_store_facts(store, configuration.packet_width)
-                     : usual_store_facts(store, configuration.packet_width))
-      .leaf_triangles;
+  return input.text ? effect_store_facts(store, configuration.packet_width)
+                    : usual_store_facts(store, configuration.packet_width);
 }
 
 }  // namespace
@@ -64,10 +62,11 @@ void run_command(const PackRequest& request) {
   const sim::MachineProfile& machine = *scene.machine;
   constexpr std::uint32_t kUsualTileWidth = 32;
   const std::uint64_t spill_bytes = spill_bytes_of(machine.core_count, recursion_depth(input));
+  const StoreFacts store = store_of(machine, *scene.configuration, input);
   const ImageLimits limits = {.format = request.format,
                               .budget_bytes = image_budget_bytes(machine, 1, 1, 1, kUsualTileWidth, spill_bytes),
-                              .engine = engine_of(*scene.configuration),
-                              .leaf_triangles = leaf_triangles_of(machine, *scene.configuration, input)};
+                              .engine = store.engine,
+                              .leaf_triangles = store.leaf_triangles};
   const EffectsView of_text = input.text ? input.text->effects.view() : EffectsView{};
   const EffectsView* effects = input.text ? &of_text : nullptr;
   const GridChoice choice = choose_grid(input, *mesh, scene, limits, effects);

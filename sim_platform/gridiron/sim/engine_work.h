@@ -8,7 +8,7 @@
 #include <gridiron/base/work_counters.h>
 #include <gridiron/engine/grid/grid_work.h>
 #include <gridiron/engine/tree/tile_work.h>
-#include <gridiron/sim/tile_costs.h>
+#include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/wait_levels.h>
 
 #include <array>
@@ -27,7 +27,7 @@ struct WorkKind {
   bool is_initialisation = false;  ///< all other work is computation
 };
 
-/// What a unit of a kind costs on a machine of which the profile does not say it.
+/// What a unit of a kind costs where the machine's profile does not say it.
 struct WorkPrice {
   WorkId id;      ///< the kind
   double cycles;  ///< of a unit
@@ -96,21 +96,24 @@ struct EngineWork {
   std::uint32_t id;                   ///< FrameHead::engine_id
   std::string_view name;              ///< stable, snake_case
   std::span<const WorkKind> kinds;    ///< its own, from kSharedWorkCount on
-  std::span<const WorkPrice> prices;  ///< one at least for each of its own; the grid has none, profiles have them
+  std::span<const WorkPrice> prices;  ///< one at least for each of its own; core's engines have them in profiles
   std::array<std::string_view, kWaitLevelCount> wait_levels;  ///< by WaitLevel
 
-  /// Whether each of its kinds has a row and a price, and the engine, each row and each wait level a name. Only the
-  /// grid has kGrid's number, and no prices.
+  /// Whether each of its kinds has a row and a price, and the engine, each row and each wait level a name. Only core's
+  /// engines have their numbers, and no prices.
   template <class Kind>
   [[nodiscard]] static consteval bool is_whole(Kind end, const EngineWork& engine) {
-    constexpr bool kIsGrid = std::is_same_v<Kind, GridWork>;
-    if (kIsGrid != (engine.id == static_cast<std::uint32_t>(EngineId::kGrid)) || engine.name.empty()) return false;
+    constexpr bool kIsGrid = std::is_same_v<Kind, GridWork>, kIsTree = std::is_same_v<Kind, TileWork>;
+    if (kIsGrid != (engine.id == static_cast<std::uint32_t>(EngineId::kGrid))) return false;
+    if (kIsTree != (engine.id == static_cast<std::uint32_t>(EngineId::kTree)) || engine.name.empty()) return false;
     if (!lists_kinds(engine.kinds, kSharedWorkCount, WorkId(end).number())) return false;
     for (const std::string_view level : engine.wait_levels) {
       if (level.empty()) return false;
     }
     for (const WorkKind& kind : engine.kinds) {
-      if (!is_new_name(kSharedWork, kind.name) || (!kIsGrid && !engine.has_price(kind.id))) return false;
+      if (!is_new_name(kSharedWork, kind.name) || (!kIsGrid && !kIsTree && !engine.has_price(kind.id))) {
+        return false;
+      }
     }
     return true;
   }
@@ -169,20 +172,12 @@ inline constexpr WorkKind kTileWorkKinds[] = {
     {TileWork::kChangedBlock, "changed_block"}};
 // clang-format on
 
-/// Their prices, in the same order.
-inline constexpr auto kTilePrices = [] {
-  static_assert(kTileCosts.size() == std::size(kTileWorkKinds));
-  std::array<WorkPrice, kTileCosts.size()> prices{};
-  for (std::size_t i = 0; i < prices.size(); ++i) prices[i] = {kTileWorkKinds[i].id, kTileCosts[i].cycles};
-  return prices;
-}();
-
-/// The tree. Its prices are those of a core of two pipes whatever the machine.
+/// The tree. Machine profiles have its prices.
 inline constexpr EngineWork kTreeEngine =
     EngineWork::make(TileWork::kEnd, {.id = static_cast<std::uint32_t>(EngineId::kTree),
                                       .name = "tree",
                                       .kinds = kTileWorkKinds,
-                                      .prices = kTilePrices,
+                                      .prices = {},
                                       .wait_levels = {"tile", "node", "leaf", "setup"}});
 
 /// The engines of core, by EngineId. Engines outside core, such as the cached BVH, have their description alone.
@@ -211,11 +206,15 @@ static_assert(
   return id == Work::kGetIssue || id == Work::kPutIssue || id == Work::kWait;
 }
 
-/// @returns what units of an engine's kinds cost. @param profile  MachineProfile::work_cycles.
-[[nodiscard]] constexpr std::array<double, kWorkKindCount> work_prices(std::array<double, kWorkKindCount> profile,
+/// @returns what units of an engine's kinds cost on a machine.
+[[nodiscard]] constexpr std::array<double, kWorkKindCount> work_prices(const MachineProfile& machine,
                                                                        const EngineWork& engine) {
-  for (const WorkPrice& price : engine.prices) profile[price.id.number()] = price.cycles;
-  return profile;
+  std::array<double, kWorkKindCount> prices = machine.work_cycles;
+  if (engine.id == kTreeEngine.id) {
+    for (std::size_t i = 0; i < kTileWorkCount; ++i) prices[kSharedWorkCount + i] = machine.tile_work_cycles[i];
+  }
+  for (const WorkPrice& price : engine.prices) prices[price.id.number()] = price.cycles;
+  return prices;
 }
 
 }  // namespace gridiron::sim

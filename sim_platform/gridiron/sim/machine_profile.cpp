@@ -3,6 +3,7 @@
 #include <gridiron/sim/build_costs.h>
 #include <gridiron/sim/instruction_costs.h>
 #include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/tile_costs.h>
 #include <gridiron/sim/work_costs.h>
 
 #include <array>
@@ -23,6 +24,12 @@ constexpr std::uint64_t kMegabyte = std::uint64_t{1} << 20;
 constexpr std::array<double, kWorkKindCount> two_pipe_work_cycles() {
   std::array<double, kWorkKindCount> cycles{};
   for (std::size_t kind = 0; kind < kWorkCosts.size(); ++kind) cycles[kind] = kWorkCosts[kind].cycles;
+  return cycles;
+}
+
+constexpr std::array<double, kTileWorkCount> two_pipe_tile_work_cycles() {
+  std::array<double, kTileWorkCount> cycles{};
+  for (std::size_t kind = 0; kind < kTileCosts.size(); ++kind) cycles[kind] = kTileCosts[kind].cycles;
   return cycles;
 }
 
@@ -54,6 +61,7 @@ constexpr MachineProfile kCellPs3 = {
     .core_line_interval_cycles = 16,  // 8 bytes a cycle into one local store
     .claim_cycles = 300,              // a mailbox round trip to the general core; estimate
     .work_cycles = two_pipe_work_cycles(),
+    .tile_work_cycles = two_pipe_tile_work_cycles(),
     .master = in_order_master(),
 };
 
@@ -125,6 +133,7 @@ constexpr MachineProfile counted_fu540(MachineProfile machine) {
   machine.core_line_interval_cycles = 0;
   machine.claim_cycles = kClaimInstructions;
   machine.work_cycles = scalar_instructions();
+  machine.tile_work_cycles = {};  // not known
   return machine;
 }
 

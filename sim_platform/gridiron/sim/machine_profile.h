@@ -4,6 +4,7 @@
 
 #include <gridiron/base/work_counters.h>
 #include <gridiron/build/grid/build_step.h>
+#include <gridiron/engine/tree/tile_work.h>
 #include <gridiron/sim/latency.h>
 
 #include <array>
@@ -88,8 +89,9 @@ struct MachineProfile {
   double channel_bytes_per_cycle;    ///< shared by all cores
   double core_line_interval_cycles;  ///< least distance between two lines of one core
   double claim_cycles;               ///< from asking for a tile to having it
-  std::array<double, kWorkKindCount> work_cycles;  ///< per unit of each kind of work of core and the grid, 4 lanes
-  MasterProfile master;                            ///< builds scenes
+  std::array<double, kWorkKindCount> work_cycles;       ///< per unit of each kind of work of core and the grid, 4 lanes
+  std::array<double, kTileWorkCount> tile_work_cycles;  ///< the same of TileWork
+  MasterProfile master;                                 ///< builds scenes
 
   /// Equal in every figure and name.
   bool operator==(const MachineProfile&) const = default;

@@ -73,7 +73,7 @@ struct Constants {
         slot(machine.channel_bytes_per_cycle > 0 ? ticks_from_cycles(line_bytes / machine.channel_bytes_per_cycle) : 0),
         line_interval(ticks_from_cycles(machine.core_line_interval_cycles)),
         claim(ticks_from_cycles(machine.claim_cycles)) {
-    const auto prices = work_prices(machine.work_cycles, engine);
+    const auto prices = work_prices(machine, engine);
     for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) work[kind] = ticks_from_cycles(prices[kind]);
     for (std::uint32_t kind = 0; kind < engine.kind_count(); ++kind) {
       is_initialisation[kind] = work_kind(WorkId(kind), engine).is_initialisation;

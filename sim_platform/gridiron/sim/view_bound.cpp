@@ -71,7 +71,7 @@ TileBound ViewBound::of(std::uint32_t tile_id) {
 }
 
 TileCycles view_tile_cycles(const TileBound& bound, const MachineProfile& machine, std::uint32_t output_depth) {
-  const auto prices = work_prices(machine.work_cycles, kTreeEngine);
+  const auto prices = work_prices(machine, kTreeEngine);
   TileCycles cycles;
   for (std::uint32_t kind = 0; kind < kTreeEngine.kind_count(); ++kind) {
     cycles.work += static_cast<double>(bound.work[kind]) * prices[kind];

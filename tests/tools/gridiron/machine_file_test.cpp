@@ -52,7 +52,8 @@ TEST(MachineFile, EveryDigitReadsBackIdentical) {
 TEST(MachineFile, ABaseGivesWhatIsNotSaid) {
   const Machine machine = read_text(
       "\xEF\xBB\xBF# my chip\r\n\r\nbased_on\tcell-ps3\r\n core_count 4 # half of it\r\nclock_hz 1.5e9\n"
-      "work_cycles.cell_step 12.5\nmaster.step_cycles.node_made 7\nmaster.clock_hz 2e9\nqueue_depth 1",
+      "work_cycles.cell_step 12.5\nwork_cycles.tile_view 99\nmaster.step_cycles.node_made 7\nmaster.clock_hz "
+      "2e9\nqueue_depth 1",
       "mine.machine");
   MachineProfile expected = *sim::find_machine_profile("cell-ps3");
   expected.name = "mine";
@@ -61,6 +62,7 @@ TEST(MachineFile, ABaseGivesWhatIsNotSaid) {
   expected.clock_hz = 1.5e9;
   expected.queue_depth = 1;
   expected.work_cycles[static_cast<std::size_t>(GridWork::kCellStep)] = 12.5;
+  expected.tile_work_cycles[0] = 99;
   expected.master.step_cycles[static_cast<std::size_t>(sim::BuildStep::kNodeMade)] = 7;
   expected.master.clock_hz = 2e9;
   EXPECT_EQ(*machine, expected);

@@ -149,7 +149,7 @@ Finish add_experiment(CLI::App& app) {
                                      {"accuracy", ExperimentName::kAccuracy},
                                      {"effects", ExperimentName::kEffects}},
              "paper: Tables 1-4, Figs. 5-7 and sweeps; some eight minutes of processor time with the scans. accuracy: "
-             "what each accuracy profile costs and what is wrong with its answers; some two minutes. effects: what "
+             "what each accuracy profile costs and what is wrong with its answers; some three minutes. effects: what "
              "each effect costs, and that one that is off costs nothing; some half a minute, no scans. All leave CSV, "
              "SVG and index.html; without a terminal nothing is printed before the end")
       ->required();
@@ -194,7 +194,7 @@ struct NamedCommand {
 
 constexpr NamedCommand kCommands[] = {
     {"render", "renders a scene and reports what the frame costs on the chip", add_render},
-    {"animate", "renders a mesh a frame, each with a new grid, and reports what the frames cost", add_animate},
+    {"animate", "renders a mesh a frame, each with a new tree or grid, and reports what the frames cost", add_animate},
     {"info", "prints the contents and needs of a scene", add_info},
     {"pack", "makes a scene image (.gri) that render and firmware read as it is", add_pack},
     {"job", "makes the file of a frame that a device is given", add_job},

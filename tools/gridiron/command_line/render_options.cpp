@@ -86,8 +86,8 @@ void add_machine_options(CLI::App& app, RenderRequest& render) {
   add_parsed(app, "--seed", render.seed, parse_seed, "a whole number of at most 19 digits", "N",
              "seed of --completion random (default 0)");
   add_choice(app, "--lanes", render.lanes, Choices<std::uint32_t>{{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}},
-             "rays per SIMD group (default 4; plain: the host's widest); cycles are counted for 4 only; 1: with "
-             "--configuration tree");
+             "rays per SIMD group (default 4; plain: the host's widest); cycles are counted for 4 only; 1: "
+             "with best, without effects");
   const auto tile = [](const std::string& text) { return parse_count_pair(text, ','); };
   add_parsed(app, "--tile", render.tile, tile, "X,Y with a column and a row", "X,Y",
              "render this tile alone; the picture is the tile, the frame in main memory is whole");
@@ -96,13 +96,14 @@ void add_machine_options(CLI::App& app, RenderRequest& render) {
 void add_algorithm_options(CLI::App& app, RenderRequest& render) {
   add_choice(app, "--buffering", render.layout.depths,
              Choices<BufferDepths>{{"single", kSingleBuffering}, {"double", kDoubleBuffering}},
-             "buffers of all three levels (default: the configuration's)");
+             "one or two buffers of each kind, and as many children of a node fetched at once (default: the "
+             "configuration's)");
   add_packet(app, render.layout.packet_width);
   add_choice(
       app, "--tile-width", render.layout.tile_width,
       Choices<std::uint32_t>{{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}},
-      "pixels along a tile's edge (default: 64 with best; else 32, 16 with --store 64; with --shading scene 32, 8 with "
-      "--store 64)");
+      "pixels along a tile's edge (default: 64 with best, 32 with --store 128, 16 with --store 64; else 32, 16 with "
+      "--store 64; with --shading scene 32, 8 with --store 64)");
   add_accuracy(app, render.accuracy);
   add_choice(app, "--shading", render.shading,
              Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}, {"scene", Shading::kScene}},

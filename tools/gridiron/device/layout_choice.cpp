@@ -26,18 +26,18 @@ std::string words_of_layout(const sim::LayoutChoice& layout) {
 [[noreturn]] void refuse_layout(const sim::LayoutChoice& layout, const Configuration& configuration) {
   const std::string store = "--store " + std::to_string(sim::arena_bytes(layout.store) >> 10);
   const std::string shading = layout.has_effects ? ", --shading scene" : "";
-  if (!layout.has_effects && sim::is_built(layout, sim::Mode::kPlain, 4)) {
+  if (sim::is_built(layout, sim::Mode::kPlain, 4)) {
     std::string lanes;
     for (const std::uint32_t count : {1u, 4u, 8u, 16u}) {
       if (sim::is_built(layout, sim::Mode::kPlain, count)) lanes += (lanes.empty() ? "" : ", ") + std::to_string(count);
     }
-    usage_error("--lanes: " + store + " with " + words_of_layout(layout) + " is built for --lanes " + lanes +
-                ", of which --mode instrumented has 4");
+    usage_error("--lanes: " + store + shading + " with " + words_of_layout(layout) + " is built for --lanes " + lanes +
+                (layout.has_effects ? ", of which --mode checked and instrumented have 4"
+                                    : ", of which --mode instrumented has 4"));
   }
   if (sim::is_built(layout, sim::Mode::kChecked, 4)) {
     usage_error(store + shading + ": with " + words_of_layout(layout) +
-                (layout.has_effects ? " --mode checked and instrumented are built for --lanes 4 only"
-                                    : " it is built for --mode checked and --lanes 4 only"));
+                " it is built for --mode checked and --lanes 4 only");
   }
   std::string list;
   for (const sim::LayoutChoice& built : built_layouts()) {
@@ -129,8 +129,13 @@ void require_view_bound(const char* option, EngineId engine, const sim::LayoutCh
   head.shading = static_cast<std::uint32_t>(layout.has_effects ? Shading::kScene : Shading::kSimple);
   head.depth_address = has_depth ? 1 : 0;
   if (sim::has_view_bound(head, layout.store)) return;
-  usage_error(std::string(option) + ": tiles have a bound for a view with configuration best and no effects, " +
-              "without distances and not with --accuracy compact");
+  const char* const reason = layout.has_effects          ? "--shading scene"
+                             : engine != EngineId::kTree ? "a configuration other than best"
+                             : has_depth                 ? "--depth"
+                             : accuracy == Accuracy::kCompact
+                                 ? "--accuracy compact"
+                                 : "a local store or tiles of another size than the default";
+  usage_error(std::string(option) + ": tiles have no bound for a view with " + reason);
 }
 
 void require_effects_of(std::optional<Accuracy> accuracy) {

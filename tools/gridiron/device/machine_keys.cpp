@@ -77,8 +77,8 @@ consteval bool are_sound() {
   return true;
 }
 static_assert(are_sound(), "each row has a key and a member of its own, and limits in their order");
-static_assert(member_count<MachineProfile>() == std::size(kRows) + 4,
-              "each member but name, description, work_cycles and master has a row");
+static_assert(member_count<MachineProfile>() == std::size(kRows) + 5,
+              "each member but name, description, work_cycles, tile_work_cycles and master has a row");
 static_assert(member_count<MasterProfile>() == 2, "clock_hz and step_cycles have keys");
 
 // "2^40" instead of many digits.
@@ -104,6 +104,10 @@ std::vector<MachineKey> machine_keys(MachineProfile& machine) {
   for (std::uint32_t i = 0; i < sim::kGridEngine.kind_count(); ++i) {
     keys.push_back({kWorkKey + std::string(sim::work_kind(WorkId(i)).name), &machine.work_cycles[i], kCycles.least,
                     kCycles.most, !sim::is_charged_as_event(WorkId(i))});
+  }
+  for (std::uint32_t i = 0; i < kTileWorkCount; ++i) {
+    keys.push_back({kWorkKey + std::string(sim::kTileWorkKinds[i].name), &machine.tile_work_cycles[i], kCycles.least,
+                    kCycles.most});
   }
   keys.push_back({kMasterClockKey, &machine.master.clock_hz, kHertz.least, kHertz.most});
   for (std::size_t i = 0; i < sim::kBuildStepCount; ++i) {

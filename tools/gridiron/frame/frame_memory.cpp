@@ -1,7 +1,11 @@
 // Frame memory. SPDX-License-Identifier: Apache-2.0
 #include "frame_memory.h"
 
+#include <gridiron/engine/tree/tile_projection.h>
+
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <new>
 
@@ -80,6 +84,21 @@ void make_record(FrameMemory& frame, const std::filesystem::path& source) {
   if (status != Status::kOk) input_error(source, words_of(status));
 }
 
+// `best` decides every pixel exactly where it has no bounds of its errors, which seems to hang.
+void tell_if_unbounded(const FrameMemory& frame, const RenderPlan& plan, const std::filesystem::path& source) {
+  if (plan.engine != EngineId::kTree || plan.scene.quiet) return;
+  const TreeRecord& tree = frame.image.tree;
+  float largest = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    largest = std::max({largest, std::abs(tree.bounds_minimum[axis]), std::abs(tree.bounds_maximum[axis])});
+  }
+  if (project_eye(frame.record, largest).is_trusted) return;
+  std::fprintf(stderr,
+               "%s: pixels of this view are so small that configuration best decides each exactly, which takes up to "
+               "100,000 times as long; --configuration grid does not\n",
+               source.c_str());
+}
+
 void store_record(FrameMemory& frame) {
   const std::span<std::byte> bytes = frame.memory.bytes_at(frame.record_address, sizeof(FrameRecord));
   std::memcpy(bytes.data(), &frame.record, sizeof(FrameRecord));
@@ -141,6 +160,7 @@ void prepare(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan
   }
 
   make_record(frame, input.path);
+  tell_if_unbounded(frame, plan, input.path);
   frame.record_address = allocate(frame.memory, input.path, sizeof(FrameRecord)).address;
   store_record(frame);
 }

@@ -16,6 +16,7 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "files/interrupt.h"
+#include "gridiron/device/accuracies.h"
 #include "image_damage.h"
 #include "image_structures.h"
 
@@ -111,6 +112,10 @@ std::string configuration_with(EngineId engine, const Configuration& wanted) {
 void require_engine(const SceneInput& input, const PackedScene& packed, const SceneRequest& request, EngineId engine) {
   const bool has_it = engine == EngineId::kTree ? packed.view.has_tree : packed.view.has_grid;
   if (has_it) return;
+  if (engine == EngineId::kGrid && !request.configuration->has_grid()) {
+    input_error(input.path, "has no grid, which frames with effects in a local store of 64 KB ask for; pack it with " +
+                                std::string("--machine of a chip with such stores"));
+  }
   const char* const missing = engine == EngineId::kTree ? "tree" : "grid";
   input_error(input.path, "holds " + words_of_structures(structures_of(packed.view)) + ", but no " + missing +
                               ", which --configuration " + std::string(request.configuration->name) +
@@ -154,6 +159,8 @@ SceneKind foreseen_kind(const std::filesystem::path& path) {
 KnownScene foreseen_scene(const SceneRequest& request) {
   const SceneKind kind = foreseen_kind(request.input);
   if (kind != SceneKind::kUnknown) require_tolerance(request.tolerance, kind);
+  // What a packed scene holds decides its configuration.
+  if (kind == SceneKind::kPacked && request.configuration == nullptr) return {};
   return {kind, kind == SceneKind::kText};
 }
 
@@ -341,11 +348,22 @@ SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const Grid
   return view;
 }
 
+// "--accuracy compact": the profiles that read a format.
+std::string readers_of(TriangleFormat format) {
+  std::string names;
+  for (const NamedAccuracy& accuracy : accuracies()) {
+    if (format_of(accuracy.accuracy) == format)
+      names += (names.empty() ? "--accuracy " : ", ") + std::string(accuracy.name);
+  }
+  return names;
+}
+
 void require_format(const SceneInput& input, const PackedScene& packed, TriangleFormat format) {
   const std::uint32_t stored = packed.view.grid.triangle_format;
   if (stored == static_cast<std::uint32_t>(format)) return;
-  input_error(input.path, "was packed with --format " + word_of(static_cast<TriangleFormat>(stored)) +
-                              "; this needs --format " + word_of(format));
+  input_error(input.path, "was packed with --format " + word_of(static_cast<TriangleFormat>(stored)) + ", which " +
+                              readers_of(static_cast<TriangleFormat>(stored)) + " read; this needs --format " +
+                              word_of(format));
 }
 
 void check_packed(const SceneInput& input, const PackedScene& packed, const SceneRequest& request,
@@ -355,7 +373,8 @@ void check_packed(const SceneInput& input, const PackedScene& packed, const Scen
   if (limits.engine == EngineId::kTree && packed.view.tree.leaf_triangles > limits.leaf_triangles) {
     input_error(input.path, "was packed with leaves of " + std::to_string(packed.view.tree.leaf_triangles) +
                                 " triangles for a larger local store; this one holds leaves of " +
-                                std::to_string(limits.leaf_triangles) + ": render the mesh itself");
+                                std::to_string(limits.leaf_triangles) +
+                                "; a scene packed with --machine of a chip with such stores is read by both");
   }
   if (limits.engine != EngineId::kTree) require_grid(input, packed.view.grid, request, limits);
   if (packed.view.header.image_bytes > limits.budget_bytes) {

@@ -1,4 +1,4 @@
-// The wide tree as an engine: all rays but eye rays, in batches, by lists.
+// The wide tree as an engine of lists: all rays but those eye rays that go through the frame's own engine.
 // Source: own; core/TREE.md. Memory: its parts of the local store. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
