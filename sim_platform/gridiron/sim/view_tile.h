@@ -57,7 +57,7 @@ class TileBounder {
     count(TileWork::kView);
     count(Work::kIdGroup, Memory::kBlocks * kGroups);
     walk();
-    if (scene_.eye.is_trusted) finish();
+    if (is_bounded()) finish();
   }
 
  private:
@@ -67,6 +67,7 @@ class TileBounder {
 
   // 1 / t of what is too far away.
   static float floor_of(const FrameHead& head) { return head.t_far < 0x1p60f ? 1.0f / head.t_far : 0.0f; }
+  [[nodiscard]] bool is_bounded() const { return scene_.eye.template is_bounded<Width>(); }
   void count(WorkId kind, std::uint64_t amount = 1) { bound_->work[kind.number()] += amount; }
   void fetch(const Transfer& transfer, std::uint64_t times = 1) {
     count(Work::kGetIssue, times * transfer.commands);
@@ -137,7 +138,9 @@ class TileBounder {
       L::max(L::max(extent(0), extent(1)), extent(2)).store(sizes + base);
       met |= ((inside >= Float(0.0f)) & (w <= Float(kFloatMax))).bits() << base;
     }
-    if (!scene_.eye.is_trusted) met = ~0u;
+    if (!scene_.eye.is_trusted) {
+      met = is_bounded() ? boxes_in_wide_margins(scene_.eye, tile_, node, kFloatMax) : ~0u;
+    }
     const std::size_t bottom = stack_.size();
     for (std::uint32_t rest = met & ((2u << (node.child_count - 1)) - 1); rest != 0; rest &= rest - 1) {
       const std::uint32_t i = lowest_bit(rest);
@@ -151,7 +154,7 @@ class TileBounder {
 
   void visit_leaf(TreeChild child, float size) {
     const VertexTriangle* const records = scene_.triangles + child.first();
-    if (!scene_.eye.is_trusted) {
+    if (!is_bounded()) {
       // Every pixel of every triangle.
       if (scene_.has_facing) count(Work::kNormalSetup, child.count());
       for (std::uint32_t i = 0; i < child.count(); ++i) fetch(record_transfer(child.first() + i));
@@ -166,9 +169,11 @@ class TileBounder {
       LeafCorners<L> corners;
       corners.project(tile_, base, records + first, here);
       Int box;
-      const std::uint32_t kept = corners.template cull<Width>(kFloatMax, static_cast<float>(columns_ - 1),
-                                                              static_cast<float>(rows_count_ - 1), box) &
-                                 ((1u << here) - 1);
+      const float last_x = static_cast<float>(columns_ - 1), last_y = static_cast<float>(rows_count_ - 1);
+      const std::uint32_t met = scene_.eye.is_trusted
+                                    ? corners.template cull<Width, false>(tile_, kFloatMax, last_x, last_y, box)
+                                    : corners.template cull<Width, true>(tile_, kFloatMax, last_x, last_y, box);
+      const std::uint32_t kept = met & ((1u << here) - 1);
       if (kept == 0) continue;
       count(TileWork::kKeptGroup);
       queue(corners, box, kept, child.first() + first, records + first);

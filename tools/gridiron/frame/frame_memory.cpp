@@ -92,7 +92,8 @@ void tell_if_unbounded(const FrameMemory& frame, const RenderPlan& plan, const s
   for (int axis = 0; axis < 3; ++axis) {
     largest = std::max({largest, std::abs(tree.bounds_minimum[axis]), std::abs(tree.bounds_maximum[axis])});
   }
-  if (project_eye(frame.record, largest).is_trusted) return;
+  const EyeProjection eye = project_eye(frame.record, largest);
+  if (plan.layout.store == sim::StoreSize::k64KB ? eye.is_trusted : eye.has_bounds) return;
   std::fprintf(stderr,
                "%s: pixels of this view are so small that configuration best decides each exactly, which takes up to "
                "100,000 times as long; --configuration grid does not\n",

@@ -309,7 +309,7 @@ class TileHits {
     memory_.span[block] = span > memory_.span[block] ? span : memory_.span[block];
     memory_.id[block][pixel] = memory_.ids[lane];
     memory_.record[block][pixel] = memory_.records[lane];
-    if (eye_->is_trusted) mark(block);
+    if (eye_->template is_bounded<Width>()) mark(block);
     if (planes_.facing || planes_.distance) take_planes(block, 1u << pixel, lane);
   }
 

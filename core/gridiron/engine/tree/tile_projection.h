@@ -7,6 +7,7 @@
 
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/records.h>
+#include <gridiron/base/tree_records.h>
 #include <gridiron/ray/hits.h>
 
 #include <cstdint>
@@ -17,8 +18,13 @@ namespace gridiron {
 /// The largest relative error of an operation in any rounding mode.
 inline constexpr double kFloatUnit = 0x1p-23;
 inline constexpr std::uint32_t kMostTileWidth = 64;
-/// Pixels by which a direction may be off, so that bounds hold.
-inline constexpr double kMostMoved = 0.6 * 0x1p-6;
+/// Pixels by which a direction may be off, so that bounds hold; and so that the usual margins of boxes have room for
+/// it.
+inline constexpr double kMostMoved = 1.5, kUsuallyMoved = 0.6 * 0x1p-6;
+/// Whether tiles of a width go on with wider margins where the usual ones are too narrow. Those of 64 KB have no room
+/// for the code.
+template <std::uint32_t Width>
+inline constexpr bool kHasWiderMargins = Width >= 32;
 
 /// What all tiles of a frame share, in double.
 struct EyeProjection {
@@ -29,7 +35,14 @@ struct EyeProjection {
   float most;        ///< no component of a place or of the eye is larger
   float base_error;  ///< what doubles may lose of a place's coordinate, w's counted twice a tile's width
   float dir_max;     ///< no component of a direction is larger
-  bool is_trusted;   ///< if not, no bound holds and every pixel is decided exactly
+  bool has_bounds;   ///< if not, no bound holds and every pixel is decided exactly
+  bool is_trusted;   ///< has bounds, with the usual margins
+
+  /// Whether tiles of a width use the bounds.
+  template <std::uint32_t Width>
+  [[nodiscard]] GRIDIRON_INLINE bool is_bounded() const {
+    return kHasWiderMargins<Width> ? has_bounds : is_trusted;
+  }
 };
 
 /// What the roundings of a direction move, at most: over a frame as project_tile() has it over a tile.
@@ -105,9 +118,10 @@ GRIDIRON_RARE inline EyeProjection project_eye(const FrameHead& frame, float lar
   // Where pixels are far smaller than rounding, or numbers leave the range in which products of four keep their
   // precision, exact arithmetic decides everything.
   const MovedPixels moved = moved_pixels(frame, eye);
-  eye.is_trusted = magnitude(det) > 0x1p-12 * scale && moved.pixels < kMostMoved && moved.w < 0.6 * 0x1p-9 &&
+  eye.has_bounds = magnitude(det) > 0x1p-12 * scale && moved.pixels < kMostMoved && moved.w < 0.6 * 0x1p-9 &&
                    far < 0x1p40 && far * eye.sizes[2] < 0x1p24 && far * (eye.sizes[0] + eye.sizes[1]) < 0x1p36 &&
                    far * eye.sizes[2] > 0x1p-24;
+  eye.is_trusted = eye.has_bounds && moved.pixels < kUsuallyMoved;
   return eye;
 }
 
@@ -201,6 +215,34 @@ GRIDIRON_OUTLINE inline void project_tile(const FrameHead& frame, const EyeProje
   const float offset = static_cast<float>(offsets[2]);
   for (int axis = 0; axis < 3; ++axis) tile.planes[4][axis] = tile.rows[2][axis];
   tile.planes[4][3] = offset - (kPlaneError * (sizes[2] * eye.most + magnitude(offset)) + tile.base_error);
+}
+
+/// The children whose boxes a tile meets if directions are off by more than kUsuallyMoved, as bits: the planes'
+/// margins are wider by twice tile.direction_error. @param far  w beyond which everything is hidden.
+[[nodiscard]] GRIDIRON_RARE inline std::uint32_t boxes_in_wide_margins(const EyeProjection& eye,
+                                                                       const TileProjection& tile, const TreeNode& node,
+                                                                       float far) {
+  // By what w may be above the sum.
+  const float* const of_w = tile.planes[4];
+  const float sizes = magnitude(of_w[0]) + magnitude(of_w[1]) + magnitude(of_w[2]);
+  const float lost = 4.0f * (kPlaneError * (sizes * eye.most + magnitude(of_w[3])) + tile.base_error);
+  std::uint32_t met = 0;
+  for (std::uint32_t child = 0; child < node.child_count; ++child) {
+    const auto end_of = [&](int p, bool is_least) GRIDIRON_INLINE_LAMBDA {
+      const float* const k = tile.planes[p];
+      float sum = k[3];
+      for (int axis = 2; axis >= 0; --axis) {
+        sum = ((k[axis] > 0.0f) == is_least ? node.low : node.high)[axis][child] * k[axis] + sum;
+      }
+      return sum;
+    };
+    const float most_w = end_of(4, false) + lost;
+    const float room = most_w > 0.0f ? 2.0f * tile.direction_error * most_w : 0.0f;
+    bool is_met = end_of(4, true) <= far;
+    for (int p = 0; p < 4; ++p) is_met = is_met && end_of(p, false) + room >= 0.0f;
+    if (is_met) met |= 1u << child;
+  }
+  return met;
 }
 
 }  // namespace gridiron

@@ -141,7 +141,7 @@ class TileTracer {
       L::max(L::max(extent(0), extent(1)), extent(2)).store(sizes + base);
       met |= ((inside >= Float(0.0f)) & (w <= Float(hits_.far()))).bits() << base;
     }
-    if (!eye_->is_trusted) met = ~0u;
+    if (!eye_->is_trusted) met = met_without_trust(node);
     const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
     const std::uint32_t bottom = top_;
     std::uint32_t top = top_;
@@ -165,9 +165,13 @@ class TileTracer {
     if (!hits_.is_cleared()) hits_.clear();
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(child, records));
-    const std::uint32_t count = child.count();
     if (!eye_->is_trusted) [[unlikely]]
-      return decide_all(child);
+      return visit_without_trust(child, size, records);
+    return project_leaf<false>(child, size, records);
+  }
+  template <bool kIsWider>
+  [[nodiscard]] GRIDIRON_INLINE Status project_leaf(TreeChild child, float size, const VertexTriangle* records) {
+    const std::uint32_t count = child.count();
     work_.add(TileWork::kLeaf);
     work_.charge_to(TileWork::kLeaf);
     const LeafBase base(*eye_, tile_, Width, records[0], size);
@@ -178,7 +182,8 @@ class TileTracer {
       LeafCorners<L> corners;
       corners.project(tile_, base, records + first, here);
       Int box;
-      const std::uint32_t kept = corners.template cull<Width>(hits_.far(), last_x_, last_y_, box) & ((1u << here) - 1);
+      const std::uint32_t kept =
+          corners.template cull<Width, kIsWider>(tile_, hits_.far(), last_x_, last_y_, box) & ((1u << here) - 1);
       if (kept == 0) continue;
       queue(corners, box, kept, child.first() + first, records + first);
       if (queued_ >= kLanes) GRIDIRON_TRY(draw_group());
@@ -609,6 +614,16 @@ class TileTracer {
       for (std::uint32_t x = box & 0xFFu; x <= (box >> 16 & 0xFFu); ++x) GRIDIRON_TRY(hits_.decide_pixel(x, y, i));
     }
     return Status::kOk;
+  }
+  // What boxes and leaves take where the usual margins do not hold.
+  [[nodiscard]] GRIDIRON_RARE std::uint32_t met_without_trust(const TreeNode& node) {
+    return eye_->is_bounded<Width>() ? boxes_in_wide_margins(*eye_, tile_, node, hits_.far()) : ~0u;
+  }
+  [[nodiscard]] GRIDIRON_RARE Status visit_without_trust(TreeChild child, float size, const VertexTriangle* records) {
+    if constexpr (kHasWiderMargins<Width>) {
+      if (eye_->has_bounds) return project_leaf<true>(child, size, records);
+    }
+    return decide_all(child);
   }
   // Without any bound, all pixels of all triangles.
   [[nodiscard]] GRIDIRON_RARE Status decide_all(TreeChild child) {

@@ -76,9 +76,11 @@ struct LeafCorners {
   }
 
   /// @returns the triangles that may cover a pixel's centre and are not surely behind all hits, as bits.
-  /// @param far   w beyond which everything is hidden. @param last_x, last_y  pixels that the picture has.
-  template <std::uint32_t Width>
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t cull(float far, float last_x, float last_y, typename L::Int& box) const {
+  /// @param far  w beyond which everything is hidden. @param last_x, last_y  pixels that the picture has.
+  /// @tparam IsWider  boxes have room for directions that are off by more than kUsuallyMoved.
+  template <std::uint32_t Width, bool IsWider>
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t cull([[maybe_unused]] const TileProjection& tile, float far, float last_x,
+                                                   float last_y, typename L::Int& box) const {
     static constexpr float kWidth = Width;
     const Float least_w = L::min(L::min(w[0], w[1]), w[2]), most_w = L::max(L::max(w[0], w[1]), w[2]);
     Float column[3], row[3];
@@ -91,9 +93,13 @@ struct LeafCorners {
     const auto range = [&](const Float* place, float last, Float& first, Float& end) GRIDIRON_INLINE_LAMBDA {
       const Float low = L::min(L::min(place[0], place[1]), place[2]) + Float(1.0f - 0x1p-10f - kBoxMargin);
       const Float high = L::max(L::max(place[0], place[1]), place[2]) + Float(kBoxMargin);
+      const auto wider = [&](Float place_of_end, [[maybe_unused]] bool is_low) GRIDIRON_INLINE_LAMBDA {
+        if constexpr (IsWider) return place_of_end + Float(is_low ? -tile.direction_error : tile.direction_error);
+        return place_of_end;
+      };
       // Not a number: min and max choose their second operand.
-      first = L::select(is_near, L::max(low, Float(0.0f)), Float(0.0f));
-      end = L::select(is_near, L::min(high, Float(last)), Float(last));
+      first = L::select(is_near, L::max(wider(low, true), Float(0.0f)), Float(0.0f));
+      end = L::select(is_near, L::min(wider(high, false), Float(last)), Float(last));
     };
     Float x0, x1, y0, y1;
     range(column, last_x, x0, x1);
