@@ -36,6 +36,7 @@ TEST(Configurations, TheDefaultFollowsTheFrame) {
   EXPECT_EQ(name({.has_projection = true}), "reference");
   EXPECT_EQ(name({.has_tree = false}), "grid");
   EXPECT_EQ(name({.has_kernel = false}), "grid");
+  EXPECT_EQ(name({.has_bounds = false}), "grid");
   EXPECT_EQ(name({.has_prices = false}), "grid");
 }
 

@@ -39,6 +39,31 @@ RenderedFrame expected_frame(const TestMesh& mesh, std::uint32_t width, std::uin
   return scene.render(settings, {});
 }
 
+// A view in which `best` would seem to hang, and a scene of such a size.
+TEST(Render, WithoutBoundsGridIsTheDefault) {
+  const TestMesh torus = make_torus(40, 24, 1.0f, 0.4f);
+  const struct { TestMesh mesh; Words view; } cases[] = {
+      {torus, {"--eye", "300,200,100", "--at", "0.9,0,0.5", "--fov", "0.00001"}},
+      {moved(torus, 4e7f), {}}, {moved(torus, 1e-9f), {}}};
+  for (const auto& tested : cases) {
+    const TemporaryFolder folder("a.ply", tested.mesh);
+    const Words arguments = Words{"a.ply", "-o", "a.png", "--size", "9x7", "--report", "r.json"} + tested.view;
+    const ProgramResult plain = render(folder, arguments);
+    EXPECT_NE(plain.err.find("for the bounds of configuration best; rendered by grid"), std::string::npos) << plain.err;
+    const Json grid = Json::parse(read_file(folder.path("r.json")), nullptr, false);
+    EXPECT_EQ(grid["configuration"], "grid");
+    const ProgramResult named = render(folder, arguments + Words{"--configuration", "best"});
+    EXPECT_NE(named.err.find("--configuration grid does not"), std::string::npos) << named.err;
+    const Json best = Json::parse(read_file(folder.path("r.json")), nullptr, false);
+    EXPECT_EQ(best["configuration"], "best");
+    EXPECT_EQ(best["image_hash"], grid["image_hash"]);
+    EXPECT_EQ(render(folder, arguments + Words{"--quiet"}).err, "");
+  }
+  const TemporaryFolder folder("a.ply", torus);
+  const ProgramResult usual = render(folder, {"a.ply", "-o", "a.png", "--size", "9x7"});
+  EXPECT_EQ(usual.err.find("bounds"), std::string::npos) << usual.err;
+}
+
 TEST(Render, FilesHoldThePlanesOfTheChip) {
   const TestMesh mesh = make_torus(40, 24, 1.0f, 0.4f);
   const struct { std::uint32_t width, height; } sizes[] = {{96, 64}, {33, 17}, {1, 1}, {1, 300}, {300, 1}};

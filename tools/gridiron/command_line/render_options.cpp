@@ -60,7 +60,7 @@ void add_output_options(CLI::App& app, RenderRequest& render) {
   app.add_flag(
       "--bound", render.has_bound,
       "what the tiles of best may take for this camera too, in the report and beside the worst tile; takes about "
-      "as long as the frame");
+      "as long as the frame, much longer where hundreds of triangles meet in one pixel");
   add_count(app, "--repeat", render.repeats, 1, 1000,
             "build and render N times and print the least of the host's times (default 1)");
   add_quiet(app, render.scene.quiet);

@@ -39,7 +39,7 @@ const Configuration* find_configuration(std::string_view name) {
 
 const Configuration& default_configuration(const ConfigurationNeed& need) {
   if (need.has_projection) return *find_configuration("reference");
-  return *find_configuration(need.has_tree && need.has_kernel && need.has_prices ? "best" : "grid");
+  return *find_configuration(need.has_tree && need.has_kernel && need.has_bounds && need.has_prices ? "best" : "grid");
 }
 
 }  // namespace gridiron::tool

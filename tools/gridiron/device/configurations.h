@@ -59,6 +59,7 @@ struct ConfigurationNeed {
   bool has_projection = false;  ///< triangles are those of Accuracy::kPaper
   bool has_tree = true;         ///< false: a packed scene without a tree
   bool has_kernel = true;       ///< false: no kernel of `best` is built for the store, the mode and the lanes
+  bool has_bounds = true;       ///< false: `best` has no bounds of its errors in the view
   bool has_prices = true;       ///< false: the machine counts instructions, in a mode that counts
 };
 

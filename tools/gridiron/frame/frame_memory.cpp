@@ -1,8 +1,6 @@
 // Frame memory. SPDX-License-Identifier: Apache-2.0
 #include "frame_memory.h"
 
-#include <gridiron/engine/tree/tile_projection.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,6 +12,7 @@
 #include "frame_pictures.h"
 #include "gridiron/device/store_facts.h"
 #include "gridiron/scene/scene_points.h"
+#include "view_bounds.h"
 
 namespace gridiron::tool {
 namespace {
@@ -84,7 +83,7 @@ void make_record(FrameMemory& frame, const std::filesystem::path& source) {
   if (status != Status::kOk) input_error(source, words_of(status));
 }
 
-// `best` decides every pixel exactly where it has no bounds of its errors, which seems to hang.
+// Without bounds `best` decides every pixel exactly, which seems to hang.
 void tell_if_unbounded(const FrameMemory& frame, const RenderPlan& plan, const std::filesystem::path& source) {
   if (plan.engine != EngineId::kTree || plan.scene.quiet) return;
   const TreeRecord& tree = frame.image.tree;
@@ -92,11 +91,10 @@ void tell_if_unbounded(const FrameMemory& frame, const RenderPlan& plan, const s
   for (int axis = 0; axis < 3; ++axis) {
     largest = std::max({largest, std::abs(tree.bounds_minimum[axis]), std::abs(tree.bounds_maximum[axis])});
   }
-  const EyeProjection eye = project_eye(frame.record, largest);
-  if (plan.layout.store == sim::StoreSize::k64KB ? eye.is_trusted : eye.has_bounds) return;
+  if (has_bounds(frame.record, largest, plan)) return;
   std::fprintf(stderr,
-               "%s: pixels of this view are so small that configuration best decides each exactly, which takes up to "
-               "100,000 times as long; --configuration grid does not\n",
+               "%s: pixels too small or a scene too large or small for the bounds of configuration best: it decides "
+               "every pixel exactly, which takes up to 100,000 times as long; --configuration grid does not\n",
                source.c_str());
 }
 

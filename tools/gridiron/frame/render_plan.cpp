@@ -43,6 +43,7 @@ const Configuration& configuration_of(const RenderRequest& request, const KnownS
       {.has_projection = request.accuracy == Accuracy::kPaper,
        .has_tree = scene.has_tree,
        .has_kernel = has_best_kernel(machine, request.layout.store, plan.shading == Shading::kScene, is_built),
+       .has_bounds = scene.has_bounds,
        .has_prices = plan.mode == Mode::kPlain || !sim::counts_instructions(machine)});
 }
 

@@ -7,6 +7,7 @@
 #include "base/words.h"
 #include "gridiron/device/store_facts.h"
 #include "gridiron/scene/hither.h"
+#include "view_bounds.h"
 
 namespace gridiron::tool {
 namespace {
@@ -35,6 +36,22 @@ void check_scene_view(const RenderRequest& request, const RequestedFrame& frame)
   check_hither(input, complete_view(frame.view, aspect, no_points), plan.width, plan.height);
 }
 
+// Where `best` would be the default but has no bounds, `grid` is, if the scene has one.
+void take_grid_without_bounds(const RenderRequest& request, RequestedFrame& frame) {
+  if (request.scene.configuration != nullptr || frame.plan.engine != EngineId::kTree) return;
+  const PackedScene* const packed = std::get_if<PackedScene>(&frame.input.content);
+  if (packed != nullptr && !packed->view.has_grid) return;
+  if (has_bounds(frame.input, frame.plan, frame.view)) return;
+  KnownScene known = known_scene(frame.input);
+  known.has_bounds = false;
+  frame.plan = resolve(request, known, this_host());
+  if (request.scene.quiet) return;
+  std::fprintf(stderr,
+               "%s: pixels too small or a scene too large or small for the bounds of configuration best; rendered by "
+               "grid\n",
+               request.scene.input.c_str());
+}
+
 }  // namespace
 
 RequestedFrame read_requested_frame(const RenderRequest& request, const std::vector<Output>& outputs) {
@@ -49,6 +66,7 @@ RequestedFrame read_requested_frame(const RenderRequest& request, const std::vec
   picture = complete_request(picture, frame.input.text ? frame.input.text->view : SceneView{});
   frame.view = join_view(picture.view, *picture.camera);
   check_scene_view(request, frame);
+  take_grid_without_bounds(request, frame);
   if (!request.scene.quiet) {
     tell_notes(frame.input);
     tell_fewer_buffers(request, frame.plan);

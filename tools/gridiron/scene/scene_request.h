@@ -32,6 +32,7 @@ struct KnownScene {
   bool has_tree = true;             ///< false: a packed scene that was read and has none
   bool has_projection = false;      ///< a packed scene that was read has TriangleFormat::kProjection
   std::optional<CountPair> size{};  ///< the picture's size in a text scene
+  bool has_bounds = true;           ///< false: `best` has no bounds of its errors in the view
 };
 
 /// Size of a picture if neither the command line nor a text scene has one.

@@ -1,0 +1,69 @@
+// Bounds of a view. SPDX-License-Identifier: Apache-2.0
+#include "view_bounds.h"
+
+#include <gridiron/engine/tree/tile_projection.h>
+#include <gridiron/frame/frame_setup.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gridiron/scene/scene_points.h"
+
+namespace gridiron::tool {
+namespace {
+
+// The largest coordinate; not a number or without end: of a mesh that cannot be built.
+float largest_of(const Mesh& mesh) {
+  float largest = 0.0f;
+  for (const Vec3& vertex : mesh.vertices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(std::abs(vertex[axis]) <= largest)) largest = std::abs(vertex[axis]);
+    }
+  }
+  return largest;
+}
+
+bool has_all_vertices(const Mesh& mesh) {
+  return std::ranges::all_of(mesh.triangles, [&](const UVec3& triangle) {
+    return std::max({triangle.x, triangle.y, triangle.z}) < mesh.vertices.size();
+  });
+}
+
+float largest_of(const TreeRecord& tree) {
+  float largest = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    largest = std::max({largest, std::abs(tree.bounds_minimum[axis]), std::abs(tree.bounds_maximum[axis])});
+  }
+  return largest;
+}
+
+}  // namespace
+
+bool has_bounds(const FrameHead& frame, float largest, const RenderPlan& plan) {
+  const EyeProjection eye = project_eye(frame, largest);
+  return plan.layout.store == sim::StoreSize::k64KB ? eye.is_trusted : eye.has_bounds;
+}
+
+bool has_bounds(const SceneInput& input, const RenderPlan& plan, const ViewRequest& view) {
+  const PackedScene* const packed = std::get_if<PackedScene>(&input.content);
+  const Mesh* const mesh = std::get_if<Mesh>(&input.content);
+  const float largest = packed != nullptr ? largest_of(packed->view.tree) : largest_of(*mesh);
+  if (!std::isfinite(largest) || (mesh != nullptr && !has_all_vertices(*mesh))) return true;
+  const PointSource points = [&](const PointVisitor& visitor) {
+    if (packed != nullptr) {
+      visit_points(packed->view, packed->file.bytes, visitor);
+    } else {
+      visit_points(mesh->view(), visitor);
+    }
+  };
+  FrameSettings settings;
+  settings.camera = complete_view(view, static_cast<double>(plan.width) / plan.height, points);
+  settings.width = plan.width;
+  settings.height = plan.height;
+  settings.tile_width = plan.layout.tile_width;
+  settings.color = MainAddress{kLineBytes};
+  FrameHead frame{};
+  return make_frame_head(settings, frame) != Status::kOk || has_bounds(frame, largest, plan);
+}
+
+}  // namespace gridiron::tool
