@@ -399,6 +399,7 @@ class TileBounder {
       }
       return;
     }
+    count(TileWork::kLargeTriangle);
     const auto& places = kTilePlaces<Width>;
     const Float zero(0.0f), last(kBlockWidth - 1.0f);
     Float most[3], covers[3];
@@ -446,6 +447,7 @@ class TileBounder {
   static constexpr std::uint32_t kFewBlocks = 4;  // of TileTracer with four lanes
   void count_blocks(std::uint64_t tested, std::uint64_t covered) {
     count(TileWork::kBlock, tested);
+    count(TileWork::kTakenBlock, tested);
     count(TileWork::kCoveredBlock, covered);
     if (scene_.has_facing) count(TileWork::kFacingBlock, tested + covered);
   }

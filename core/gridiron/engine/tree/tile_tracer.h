@@ -416,6 +416,8 @@ class TileTracer {
   [[nodiscard]] GRIDIRON_OUTLINE Status draw_many_blocks(const Drawn& f, std::uint32_t bx0, std::uint32_t by0,
                                                          std::uint32_t bx1, std::uint32_t by1) {
     static constexpr float kLast = kBlockWidth - 1.0f;
+    work_.add(TileWork::kLargeTriangle);
+    work_.charge_to(TileWork::kLargeTriangle);
     const auto& places = kTilePlaces<Width>;
     Float most[4], least[4];
     for (int k = 0; k < 4; ++k) {
@@ -522,6 +524,10 @@ class TileTracer {
       all = all & possible[group];
     }
     if (L::sign_bits(all) == L::kAllBits) return Status::kOk;
+    if constexpr (!kCovered) {
+      work_.add(TileWork::kTakenBlock);
+      work_.charge_to(TileWork::kTakenBlock);
+    }
     const Float old_span(memory_.span[block]);
     std::uint32_t* const id = memory_.id[block];
     std::uint32_t* const record = memory_.record[block];
@@ -556,6 +562,7 @@ class TileTracer {
       }
       return hits_.decide(block, pixels, f.lane);
     }
+    work_.charge_to(kKind);
     return Status::kOk;
   }
   static constexpr std::uint32_t kAllPixels = (1u << kBlockPixels) - 1;
@@ -604,7 +611,9 @@ class TileTracer {
       }
       for (int k = kCovered ? 3 : 0; k < 4; ++k) line[k] = line[k] + f.y[k];
     }
-    return (open | taken) == 0 ? Status::kOk : settle_block(f, block, taken, open);
+    if ((open | taken) == 0) return Status::kOk;
+    if constexpr (!kCovered) work_.add(TileWork::kTakenBlock);
+    return settle_block(f, block, taken, open);
   }
 
   // Pixels of a box, one by one.

@@ -23,8 +23,10 @@ enum class TileWork : std::uint8_t {
   kTinyPlace,      ///< pixels of groups of tiny triangles tested, one of each triangle at once
   kTinyPixel,      ///< pixels of tiny triangles that were hit, compared with what was there
   kDrawn,          ///< triangles drawn block by block
+  kLargeTriangle,  ///< of these, triangles whose blocks were tested in groups first
   kBlockGroup,     ///< SIMD groups of blocks tested against a large triangle
   kBlock,          ///< blocks tested pixel by pixel
+  kTakenBlock,     ///< of these, blocks with pixels that the triangle may be first in
   kCoveredBlock,   ///< blocks inside a triangle, of which only 1 / t was compared
   kFacingBlock,    ///< blocks whose hits' angle to the triangle was computed
   kOpenPixel,      ///< pixels that floats left open, decided exactly
