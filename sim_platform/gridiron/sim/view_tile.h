@@ -40,7 +40,7 @@ class TileBounder {
     project_tile(head, scene_.eye, view, Width, tile_);
     shapes_.clear();
     for (auto& block : parts_) block.clear();
-    block_span_.fill(floor_of(head) * 0x1p-16f);
+    block_span_.fill(floor() * 0x1p-16f);
     pixels_.fill(kAllPixels);
     covered_.fill(0);
     covered_low_.fill(kInfinity);
@@ -65,8 +65,11 @@ class TileBounder {
   static constexpr std::uint32_t kRow = Memory::kBlocksPerRow;
   static constexpr std::uint32_t kGroups = kBlockPixels / kLanes;
 
-  // 1 / t of what is too far away.
-  static float floor_of(const FrameHead& head) { return head.t_far < 0x1p60f ? 1.0f / head.t_far : 0.0f; }
+  // 1 / w of what is too far away.
+  [[nodiscard]] float floor() const {
+    const float farthest = scene_.head.t_far * scene_.eye.unit;
+    return farthest < 0x1p60f ? 1.0f / farthest : 0.0f;
+  }
   [[nodiscard]] bool is_bounded() const { return scene_.eye.template is_bounded<Width>(); }
   void count(WorkId kind, std::uint64_t amount = 1) { bound_->work[kind.number()] += amount; }
   void fetch(const Transfer& transfer, std::uint64_t times = 1) {
@@ -474,7 +477,7 @@ class TileBounder {
   // Pixels that floats may leave open: those near an edge, and those where two triangles are equally near.
   void settle_blocks() {
     if (!is_looked_into()) return;
-    const float floor = floor_of(scene_.head) * (1.0f + 0x1p-14f);
+    const float floor = this->floor() * (1.0f + 0x1p-14f);
     std::uint64_t looked_into = 0;
     for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
       std::vector<BlockPart>& parts = parts_[block];

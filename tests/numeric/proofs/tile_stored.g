@@ -1,10 +1,12 @@
 # core/gridiron/engine/tree/tile_hits.h: what decide() stores of an exact hit, and clear() of t_far. 1 / t is above what is
 # stored and below what the span adds, by 2 e: e for what comparisons round, e for the distance by which rounded t surely
-# differ. t is rounded, t_far is not. Only ratios count: the exact t is 1. SPDX-License-Identifier: Apache-2.0
+# differ. t is rounded, t_far is not. Only ratios count: the exact t is 1, and so is the
+# unit, a power of two. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/tile_hits.h
-%constant kLess const float exact = (1.0f / t) * (1.0f - {}), stored = exact < kMostStoredNear ? exact : kMostStoredNear;
+%constant kLess const float exact = (1.0f / (t * eye_->unit)) * (1.0f - {});
 %constant kSpan take(block, pixel, lane, stored, stored * {});
-%constant kFloor floor_ = frame_->t_far < 0x1p60f ? (1.0f / frame_->t_far) * (1.0f - {}) : 0.0f;
+%line const float farthest = frame_->t_far * eye_->unit;
+%constant kFloor floor_ = farthest < 0x1p60f ? (1.0f / farthest) * (1.0f - {}) : 0.0f;
 %constant kFloorSpan const Float none(floor_), span(floor_ * {}), zero(0.0f);
 %proves kLess least 0.313
 %proves kSpan least 0.329

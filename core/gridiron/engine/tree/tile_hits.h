@@ -107,7 +107,8 @@ class TileHits {
     work_.charge_to(TileWork::kClearedBlock);
     is_cleared_ = true;
     // What lies farther than t_far is no hit. Near it, exact distances decide.
-    floor_ = frame_->t_far < 0x1p60f ? (1.0f / frame_->t_far) * (1.0f - 0x1p-18f) : 0.0f;
+    const float farthest = frame_->t_far * eye_->unit;
+    floor_ = farthest < 0x1p60f ? (1.0f / farthest) * (1.0f - 0x1p-18f) : 0.0f;
     const Float none(floor_), span(floor_ * 0x1p-16f), zero(0.0f);
     const Int no_id = Int::splat(kNoTriangle);
     for (std::uint32_t block = 0; block < Memory::kBlocks; ++block) {
@@ -252,7 +253,8 @@ class TileHits {
             if (!is_first) continue;
           }
         }
-        const float exact = (1.0f / t) * (1.0f - 0x1p-19f), stored = exact < kMostStoredNear ? exact : kMostStoredNear;
+        const float exact = (1.0f / (t * eye_->unit)) * (1.0f - 0x1p-19f);
+        const float stored = exact < kMostStoredNear ? exact : kMostStoredNear;
         take(block, pixel, lane, stored, stored * 0x1p-17f);
       } else {
         take(block, pixel, lane, memory_.near[block][pixel], memory_.span[block]);

@@ -10,6 +10,7 @@
 #include <gridiron/base/tree_records.h>
 #include <gridiron/ray/hits.h>
 
+#include <bit>
 #include <cstdint>
 #include <initializer_list>
 
@@ -35,6 +36,7 @@ struct EyeProjection {
   float most;        ///< no component of a place or of the eye is larger
   float base_error;  ///< what doubles may lose of a place's coordinate, w's counted twice a tile's width
   float dir_max;     ///< no component of a direction is larger
+  float unit;        ///< a power of two: w is t times it, so that the scene's size is a number like others
   bool has_bounds;   ///< if not, no bound holds and every pixel is decided exactly
   bool is_trusted;   ///< has bounds, with the usual margins
 
@@ -72,6 +74,13 @@ GRIDIRON_RARE inline MovedPixels moved_pixels(const FrameHead& frame, const EyeP
   return {kShare * (larger(moved[0], moved[1]) + 2.0 * kMostTileWidth * moved[2]), kShare * moved[2]};
 }
 
+/// @returns a power of two near 1 / size, and 1 where size is no extreme number.
+[[nodiscard]] GRIDIRON_RARE inline double unit_of(double size) {
+  if (size > 0x1p-24 && size < 0x1p24) return 1.0;
+  static constexpr std::uint64_t kExponent = 0x7FF0000000000000u, kTwiceBias = std::uint64_t{2 * 1023} << 52;
+  return std::bit_cast<double>(kTwiceBias - (std::bit_cast<std::uint64_t>(size) & kExponent));
+}
+
 /// Inverts the camera's matrix.
 ///
 /// Rows are products of two columns over the determinant: with doubles of 2^-52
@@ -107,6 +116,13 @@ GRIDIRON_RARE inline EyeProjection project_eye(const FrameHead& frame, float lar
       value = value / det;
       eye.sizes[row] += magnitude(value);
     }
+  }
+  const bool is_of_any_size = far > 0x1p-80 && far < 0x1p80;
+  const double unit = is_of_any_size ? unit_of(far * eye.sizes[2]) : 1.0;
+  eye.unit = static_cast<float>(unit);
+  for (int row = 0; row < 3; ++row) {
+    for (double& value : eye.rows[row]) value = value * unit;
+    eye.sizes[row] = eye.sizes[row] * unit;
     for (int axis = 0; axis < 3; ++axis) eye.offsets[row] -= eye.rows[row][axis] * eye.eye[axis];
   }
   // Of the eye's rows, not of a tile's.
@@ -119,7 +135,7 @@ GRIDIRON_RARE inline EyeProjection project_eye(const FrameHead& frame, float lar
   // precision, exact arithmetic decides everything.
   const MovedPixels moved = moved_pixels(frame, eye);
   eye.has_bounds = magnitude(det) > 0x1p-12 * scale && moved.pixels < kMostMoved && moved.w < 0.6 * 0x1p-9 &&
-                   far < 0x1p40 && far * eye.sizes[2] < 0x1p24 && far * (eye.sizes[0] + eye.sizes[1]) < 0x1p36 &&
+                   is_of_any_size && far * eye.sizes[2] < 0x1p24 && far * (eye.sizes[0] + eye.sizes[1]) < 0x1p36 &&
                    far * eye.sizes[2] > 0x1p-24;
   eye.is_trusted = eye.has_bounds && moved.pixels < kUsuallyMoved;
   return eye;
