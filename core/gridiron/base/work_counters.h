@@ -99,7 +99,7 @@ enum class Work : std::uint8_t {
 inline constexpr std::uint32_t kSharedWorkCount = static_cast<std::uint32_t>(Work::kCount);
 /// Kinds that there are counters for. A frame has one engine of eye rays, so all of these use the
 /// same ones; the kinds of the tree, which traces the other rays beside any of them, are in Work.
-inline constexpr std::uint32_t kWorkKindCount = 100;
+inline constexpr std::uint32_t kWorkKindCount = 101;
 
 /// A kind of Work or of an engine: the number of its counter.
 class WorkId {
