@@ -626,7 +626,8 @@ class TileTracer {
   }
   // What boxes and leaves take where the usual margins do not hold.
   [[nodiscard]] GRIDIRON_RARE std::uint32_t met_without_trust(const TreeNode& node) {
-    return eye_->is_bounded<Width>() ? boxes_in_wide_margins(*eye_, tile_, node, hits_.far()) : ~0u;
+    if (eye_->is_bounded<Width>()) return boxes_in_wide_margins(*eye_, tile_, node, hits_.far());
+    return ~0u;
   }
   [[nodiscard]] GRIDIRON_RARE Status visit_without_trust(TreeChild child, float size, const VertexTriangle* records) {
     if constexpr (kHasWiderMargins<Width>) {
