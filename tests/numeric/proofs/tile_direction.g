@@ -4,7 +4,7 @@
 # rounded: its magnitude is at least the exact one less the difference, which is linear again. Pixels' places are exact,
 # multiples of 1/32. The rows' components are rounded too. SPDX-License-Identifier: Apache-2.0
 %source core/gridiron/engine/tree/tile_projection.h
-%decimal kShare const float per_off = static_cast<float>({} * kFloatUnit);
+%decimal kShare eye.per_off = static_cast<float>({} * kFloatUnit / unit);
 %proves kShare least 0.991
 %cases COLUMN LEFT ROW ALL
 %case 1 0 0 0
@@ -32,8 +32,8 @@
 %line for (int row = 0; row < 3; ++row) moved[row] += magnitude(tile.rows[row][axis]) * off;
 %round component = one * 1
 %round moved = ((0 + component * off) + 0) + 0
-%line tile.direction_error = per_off * ((moved[0] > moved[1] ? moved[0] : moved[1]) + span * moved[2]);
-%line tile.w_error = per_off * moved[2];
+%line tile.direction_error = eye.per_off * ((moved[0] > moved[1] ? moved[0] : moved[1]) + span * moved[2]);
+%line tile.w_error = eye.per_off * moved[2];
 %define unit = 0x1p-23
 %define share_of_unit = kShare * unit
 %round per_off = share_of_unit * 1

@@ -37,6 +37,7 @@ struct EyeProjection {
   float base_error;  ///< what doubles may lose of a place's coordinate, w's counted twice a tile's width
   float dir_max;     ///< no component of a direction is larger
   float unit;        ///< a power of two: w is t times it, so that the scene's size is a number like others
+  float per_off;     ///< what a direction is moved by in pixels and in w, for each unit of its components' roundings
   bool has_bounds;   ///< if not, no bound holds and every pixel is decided exactly
   bool is_trusted;   ///< has bounds, with the usual margins
 
@@ -70,8 +71,8 @@ GRIDIRON_RARE inline MovedPixels moved_pixels(const FrameHead& frame, const EyeP
     moved[1] += magnitude(larger(eye.rows[1][axis] + w, eye.rows[1][axis] - height * w)) * off;
     moved[2] += magnitude(w) * off;
   }
-  static constexpr double kShare = 1.02 * kFloatUnit;
-  return {kShare * (larger(moved[0], moved[1]) + 2.0 * kMostTileWidth * moved[2]), kShare * moved[2]};
+  const double share = 1.02 * kFloatUnit / double{eye.unit};
+  return {share * (larger(moved[0], moved[1]) + 2.0 * kMostTileWidth * moved[2]), share * moved[2]};
 }
 
 /// @returns a power of two near 1 / size, and 1 where size is no extreme number.
@@ -120,6 +121,7 @@ GRIDIRON_RARE inline EyeProjection project_eye(const FrameHead& frame, float lar
   const bool is_of_any_size = far > 0x1p-80 && far < 0x1p80;
   const double unit = is_of_any_size ? unit_of(far * eye.sizes[2]) : 1.0;
   eye.unit = static_cast<float>(unit);
+  eye.per_off = static_cast<float>(1.01 * kFloatUnit / unit);
   for (int row = 0; row < 3; ++row) {
     for (double& value : eye.rows[row]) value = value * unit;
     eye.sizes[row] = eye.sizes[row] * unit;
@@ -205,9 +207,8 @@ GRIDIRON_OUTLINE inline void project_tile(const FrameHead& frame, const EyeProje
     const float off = larger(column0, column1) + larger(left, right) + larger(top, bottom) + ends;
     for (int row = 0; row < 3; ++row) moved[row] += magnitude(tile.rows[row][axis]) * off;
   }
-  const float per_off = static_cast<float>(1.01 * kFloatUnit);
-  tile.direction_error = per_off * ((moved[0] > moved[1] ? moved[0] : moved[1]) + span * moved[2]);
-  tile.w_error = per_off * moved[2];
+  tile.direction_error = eye.per_off * ((moved[0] > moved[1] ? moved[0] : moved[1]) + span * moved[2]);
+  tile.w_error = eye.per_off * moved[2];
 
   // Planes. A component takes 3 kFloatUnit of the two parts that it is the sum of: their own, a product, the sum. Three
   // products and sums take 4, of the offset 5 with its own two: 7 at most. The rest is room.

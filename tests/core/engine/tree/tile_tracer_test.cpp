@@ -212,11 +212,20 @@ TYPED_TEST(TileTracerTest, EveryPixelIsThatOfExactArithmetic) {
 
 TYPED_TEST(TileTracerTest, AnyScalePlaceLeafAndPointOfThePixel) {
   const TestMesh soup = make_random_soup(120, 0.4f, 7);
-  for (const float scale : {1.0f, 0x1p-20f, 0x1p18f, 0x1p-60f, 0x1p50f}) {
+  for (const float scale : {1.0f, 0x1p-20f, 0x1p18f, 0x1p26f, 0x1p-60f, 0x1p50f}) {
     SCOPED_TRACE(scale);
     Camera camera = kCameras[0];
     camera.eye *= scale;
-    expect_exact<TypeParam>(moved(soup, scale), view_of(camera, 33, 20));
+    View view = view_of(camera, 33, 20);
+    const EyeProjection eye = project_eye(view.frame, 2.0f * scale);
+    EXPECT_TRUE(eye.is_trusted);
+    EXPECT_EQ(eye.unit == 1.0f, scale > 0x1p-22f && scale < 0x1p20f);
+    expect_exact<TypeParam>(moved(soup, scale), view);
+    view.frame.t_far = 4.0f * scale;
+    expect_exact<TypeParam>(moved(soup, scale), view);
+  }
+  for (const float scale : {0x1p-90f, 0x1p90f}) {
+    EXPECT_FALSE(project_eye(view_of({.eye = {0, 0, 4.0f * scale}}, 33, 20).frame, scale).has_bounds) << scale;
   }
   const Vec3 place(4e4f, -3e4f, 1e4f);
   Camera camera = kCameras[0];
