@@ -220,7 +220,7 @@ TYPED_TEST(TileTracerTest, AnyScalePlaceLeafAndPointOfThePixel) {
     const EyeProjection eye = project_eye(view.frame, 2.0f * scale);
     EXPECT_TRUE(eye.is_trusted);
     EXPECT_EQ(eye.unit == 1.0f, scale > 0x1p-22f && scale < 0x1p20f);
-    expect_exact<TypeParam>(moved(soup, scale), view);
+    expect_exact<TypeParam>(moved(joined(soup, soup), scale), view);
     view.frame.t_far = 4.0f * scale;
     expect_exact<TypeParam>(moved(soup, scale), view);
   }
