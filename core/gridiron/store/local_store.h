@@ -145,8 +145,8 @@ struct TreeLayout64K {
   using Engine = TileEngine;
   static constexpr std::uint32_t kEffects = 0;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 35 * 1024 + 512;
-  static constexpr std::uint32_t kStackBudgetBytes = 7 * 1024 + 512;
+  static constexpr std::uint32_t kCodeBudgetBytes = 35 * 1024 + 544;
+  static constexpr std::uint32_t kStackBudgetBytes = 7 * 1024 + 480;
   static constexpr std::uint32_t kTileWidth = 16;
   static constexpr std::uint32_t kPacketWidth = 0;
   static constexpr std::uint32_t kMaxOutputDepth = 2;

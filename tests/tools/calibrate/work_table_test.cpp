@@ -4,6 +4,7 @@
 #include <gridiron/bvh/bvh_renderer.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
+#include <gridiron/sim/tile_costs.h>
 #include <gridiron/sim/work_costs.h>
 #include <work_table.h>
 

@@ -141,7 +141,10 @@ class TileTracer {
       L::max(L::max(extent(0), extent(1)), extent(2)).store(sizes + base);
       met |= ((inside >= Float(0.0f)) & (w <= Float(hits_.far()))).bits() << base;
     }
-    if (!eye_->is_trusted) met = met_without_trust(node);
+    if (!eye_->is_trusted) {
+      met = ~0u;
+      if constexpr (kHasWiderMargins<Width>) met = met_without_trust(node);
+    }
     const std::uint32_t there = (2u << (node.child_count - 1)) - 1;
     const std::uint32_t bottom = top_;
     std::uint32_t top = top_;
@@ -165,8 +168,12 @@ class TileTracer {
     if (!hits_.is_cleared()) hits_.clear();
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(child, records));
-    if (!eye_->is_trusted) [[unlikely]]
-      return visit_without_trust(child, size, records);
+    if (!eye_->is_trusted) [[unlikely]] {
+      if constexpr (kHasWiderMargins<Width>) {
+        if (eye_->has_bounds) return visit_with_wider_margins(child, size, records);
+      }
+      return decide_all(child);
+    }
     return project_leaf<false>(child, size, records);
   }
   template <bool kIsWider>
@@ -626,14 +633,12 @@ class TileTracer {
   }
   // What boxes and leaves take where the usual margins do not hold.
   [[nodiscard]] GRIDIRON_RARE std::uint32_t met_without_trust(const TreeNode& node) {
-    if (eye_->is_bounded<Width>()) return boxes_in_wide_margins(*eye_, tile_, node, hits_.far());
-    return ~0u;
+    if (!eye_->has_bounds) return ~0u;
+    return boxes_in_wide_margins(*eye_, tile_, node, hits_.far());
   }
-  [[nodiscard]] GRIDIRON_RARE Status visit_without_trust(TreeChild child, float size, const VertexTriangle* records) {
-    if constexpr (kHasWiderMargins<Width>) {
-      if (eye_->has_bounds) return project_leaf<true>(child, size, records);
-    }
-    return decide_all(child);
+  [[nodiscard]] GRIDIRON_RARE Status visit_with_wider_margins(TreeChild child, float size,
+                                                              const VertexTriangle* records) {
+    return project_leaf<true>(child, size, records);
   }
   // Without any bound, all pixels of all triangles.
   [[nodiscard]] GRIDIRON_RARE Status decide_all(TreeChild child) {

@@ -286,7 +286,8 @@ TestMesh wall_of_pixels(const View& view) {
     for (std::uint32_t column = 0; column < columns; ++column) {
       Vec3 place;
       for (int axis = 0; axis < 3; ++axis) {
-        const double direction = double{view.frame.corner[axis]} + (side(column) - 1) * double{view.frame.step_x[axis]} +
+        const double direction = double{view.frame.corner[axis]} +
+                                 (side(column) - 1) * double{view.frame.step_x[axis]} +
                                  (side(row) - 1) * double{view.frame.step_y[axis]};
         place[axis] = static_cast<float>(double{view.frame.eye[axis]} + direction * 312.0);
       }
@@ -303,8 +304,8 @@ TestMesh wall_of_pixels(const View& view) {
   return mesh;
 }
 
-// A view whose pixels are `step` apart at w = 1, somewhere off the z axis; what it sees lies around the origin, its boxes
-// along columns and rows.
+// A view whose pixels are `step` apart at w = 1, somewhere off the z axis; what it sees lies around the origin, its
+// boxes along columns and rows.
 View narrow_view(double step) {
   View view = view_of(kCameras[0], 45, 37);
   const double corner[3] = {-1.1, -0.7, -1.0}, steps[2] = {step, -step};
