@@ -44,7 +44,7 @@ TEST(Render, WithoutBoundsGridIsTheDefault) {
   const TestMesh torus = make_torus(40, 24, 1.0f, 0.4f);
   const struct { TestMesh mesh; Words view; } cases[] = {
       {torus, {"--eye", "300,200,100", "--at", "0.9,0,0.5", "--fov", "0.00001"}},
-      {moved(torus, 4e7f), {}}, {moved(torus, 1e-9f), {}}};
+      {moved(torus, 1e25f), {}}, {moved(torus, 1e-25f), {}}};
   for (const auto& tested : cases) {
     const TemporaryFolder folder("a.ply", tested.mesh);
     const Words arguments = Words{"a.ply", "-o", "a.png", "--size", "9x7", "--report", "r.json"} + tested.view;
