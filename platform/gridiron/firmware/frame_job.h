@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kFrameJobVersion = 2;
 /// The most cores of a board that take part in a frame.
 inline constexpr std::uint32_t kMostBoardCores = 16;
 /// The most kinds of work that a result can hold; checked against core's kWorkKindCount where both are known.
-inline constexpr std::uint32_t kMostWorkKinds = 100;
+inline constexpr std::uint32_t kMostWorkKinds = 104;
 
 /// The job begins its file, which is loaded at base_address. Frame record and scene image follow in the file; the
 /// memory for the result and for rays that wait comes after it. Memory that is not loaded need not be zero.
@@ -62,7 +62,7 @@ struct CoreResult {
   std::uint32_t work[kMostWorkKinds];  ///< WorkCounters after the frame; 0 where there are fewer kinds
   std::uint32_t missing_effects;       ///< EffectBits, where the status is kMissingEffect; else 0
 };
-static_assert(sizeof(CoreResult) == 440);
+static_assert(sizeof(CoreResult) == 456);
 inline constexpr std::uint32_t kNotRun = 0xFFFFFFFFu;
 
 /// The work of one tile; results are in the order of tile ids.
