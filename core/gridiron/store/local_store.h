@@ -174,7 +174,7 @@ struct EffectLayout256K {
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = PacketWidthV >= 16 ? 88 * 1024 : 94 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 256 * (PacketWidthV >= 16 ? 36 : PacketWidthV != 0 ? 31 : 45);
+  static constexpr std::uint32_t kStackBudgetBytes = 256 * (PacketWidthV >= 16 ? 36 : PacketWidthV != 0 ? 31 : 51);
   static constexpr std::uint32_t kTileWidth = 32;
   static constexpr std::uint32_t kPacketWidth = PacketWidthV;
   static constexpr std::uint32_t kMailboxSlots = PacketWidthV < 16 ? 64 : 256;

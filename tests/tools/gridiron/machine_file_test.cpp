@@ -122,7 +122,7 @@ TEST(MachineFile, WithoutABaseEveryKeyIsAsked) {
                                       "', and has no 'based_on' to take it from");
   }
   // 14 numbers and the master's clock; three kinds of work are charged as events and have no key.
-  EXPECT_EQ(keys, static_cast<int>(15 + sim::kGridEngine.kind_count() - 3 + sim::kBuildStepCount));
+  EXPECT_EQ(keys, static_cast<int>(15 + sim::kGridEngine.kind_count() - 3 + kTileWorkCount + sim::kBuildStepCount));
   EXPECT_NE(read_text(without_line(text, "description"), "b.machine")->description, "");
 }
 

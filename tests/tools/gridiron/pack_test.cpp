@@ -82,7 +82,10 @@ TEST(Pack, ImagesHoldWhatTheirConfigurationReads) {
       << "effects have a tree";
   // With effects a 64 KB store takes frames of the grid, whatever the configuration.
   expect_failure(folder, {"render", "a.nff.gri", "--configuration", "best", "--store", "64", "--shading", "scene"}, 1,
-                 "pack it with --configuration grid");
+                 "pack it with --machine of a chip with such stores");
+  folder.write("small.machine", "based_on cell-ps3\nlocal_store_bytes 65536\n");
+  run(folder, {"pack", "a.nff", "-o", "small.gri", "--machine", "small.machine"});
+  run(folder, {"render", "small.gri", "--machine", "small.machine", "--size", "16x16"});
   for (const Words& option : {Words{"--lambda", "2"}, {"--macro-width", "4"}}) {
     expect_failure(folder, Words{"render", "a.ply", "--configuration", "best"} + option, 2, "has no grid");
     expect_failure(folder, Words{"render", "a.ply.gri", "--configuration", "best"} + option, 2, "has no grid");
@@ -105,7 +108,8 @@ TEST(Pack, ImagesAreUsedAsTheyWerePacked) {
     Words arguments;
     const char* words;
   } cases[] = {
-      {{"render", "a.gri", "--accuracy", "paper"}, "with --format vertices; this needs --format projection"},
+      {{"render", "a.gri", "--accuracy", "paper"},
+       "which --accuracy fast, standard, exact read; this needs --format projection"},
       {{"render", "a.gri", "--accuracy", "compact"}, "needs --format lattice"},
       {with_reference({"render", "a.gri", "--lambda", "2"}), "packed with lambda 4"},
       {with_reference({"render", "a.gri", "--macro-width", "4"}), "width 6"},

@@ -43,11 +43,12 @@ RenderedFrame expected_frame(const TestMesh& mesh, std::uint32_t width, std::uin
 TEST(Render, WithoutBoundsGridIsTheDefault) {
   const TestMesh torus = make_torus(40, 24, 1.0f, 0.4f);
   const struct { TestMesh mesh; Words view; } cases[] = {
-      {torus, {"--eye", "300,200,100", "--at", "0.9,0,0.5", "--fov", "0.00001"}},
-      {moved(torus, 1e25f), {}}, {moved(torus, 1e-25f), {}}};
+      {make_box({0, 0, 0}, {1, 1, 1}),
+       {"--eye", "300,200,100", "--at", "0.9,0.9,0.9", "--fov", "0.001", "--size", "200x170"}},
+      {moved(torus, 1e25f), {"--size", "9x7"}}, {moved(torus, 1e-25f), {"--size", "9x7"}}};
   for (const auto& tested : cases) {
     const TemporaryFolder folder("a.ply", tested.mesh);
-    const Words arguments = Words{"a.ply", "-o", "a.png", "--size", "9x7", "--report", "r.json"} + tested.view;
+    const Words arguments = Words{"a.ply", "-o", "a.png", "--report", "r.json"} + tested.view;
     const ProgramResult plain = render(folder, arguments);
     EXPECT_NE(plain.err.find("for the bounds of configuration best; rendered by grid"), std::string::npos) << plain.err;
     const Json grid = Json::parse(read_file(folder.path("r.json")), nullptr, false);
@@ -276,7 +277,8 @@ TEST(Render, BoundsTheTilesOfAView) {
     run(folder, words);
     EXPECT_FALSE(Json::parse(read_file(folder.path("a.json"))).contains("worst_tile"));
   }
-  expect_failure(folder, {"render", "a.ply", "--bound", "--configuration", "grid"}, 2, "--bound: tiles have a bound");
+  expect_failure(folder, {"render", "a.ply", "--bound", "--configuration", "grid"}, 2,
+                 "--bound: tiles have no bound for a view with a configuration other than best");
   expect_failure(folder, {"render", "a.ply", "--bound", "--mode", "plain"}, 2, "--bound: is compared with the cycles");
 }
 

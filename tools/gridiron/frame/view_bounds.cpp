@@ -56,6 +56,9 @@ bool has_bounds(const SceneInput& input, const RenderPlan& plan, const ViewReque
       visit_points(mesh->view(), visitor);
     }
   };
+  bool has_points = false;
+  points([&](const auto&) { has_points = true; });
+  if (!has_points) return true;
   FrameSettings settings;
   settings.camera = complete_view(view, static_cast<double>(plan.width) / plan.height, points);
   settings.width = plan.width;
