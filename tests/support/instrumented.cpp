@@ -18,7 +18,8 @@ bool can_render(sim::SimMemory& memory, MainAddress address, const sim::ChipOpti
   std::memcpy(&frame, bytes.data(), sizeof frame);
   const bool has_effects = frame.shading == static_cast<std::uint32_t>(Shading::kScene);
   const sim::LayoutChoice layout{options.store, frame.tile_width, options.packet_width, has_effects};
-  return sim::is_built(layout, sim::Mode::kInstrumented, 4) && sim::is_built(layout, options.mode, options.lanes);
+  return options.lanes <= sim::widest_lanes() && sim::is_built(layout, sim::Mode::kInstrumented, 4) &&
+         sim::is_built(layout, options.mode, options.lanes);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "frame_memory.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <new>
@@ -86,12 +85,7 @@ void make_record(FrameMemory& frame, const std::filesystem::path& source) {
 // Without bounds `best` decides every pixel exactly, which seems to hang.
 void tell_if_unbounded(const FrameMemory& frame, const RenderPlan& plan, const std::filesystem::path& source) {
   if (plan.engine != EngineId::kTree || plan.scene.quiet) return;
-  const TreeRecord& tree = frame.image.tree;
-  float largest = 0.0f;
-  for (int axis = 0; axis < 3; ++axis) {
-    largest = std::max({largest, std::abs(tree.bounds_minimum[axis]), std::abs(tree.bounds_maximum[axis])});
-  }
-  if (has_bounds(frame.record, largest, plan)) return;
+  if (has_bounds(frame.record, frame.image.tree, plan)) return;
   std::fprintf(stderr,
                "%s: pixels too small or a scene too large or small for the bounds of configuration best: it decides "
                "every pixel exactly, which takes up to 100,000 times as long; --configuration grid does not\n",

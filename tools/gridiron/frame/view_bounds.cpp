@@ -12,21 +12,12 @@
 namespace gridiron::tool {
 namespace {
 
-// The largest coordinate; not a number or without end: of a mesh that cannot be built.
 float largest_of(const Mesh& mesh) {
   float largest = 0.0f;
   for (const Vec3& vertex : mesh.vertices) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(std::abs(vertex[axis]) <= largest)) largest = std::abs(vertex[axis]);
-    }
+    for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(vertex[axis]));
   }
   return largest;
-}
-
-bool has_all_vertices(const Mesh& mesh) {
-  return std::ranges::all_of(mesh.triangles, [&](const UVec3& triangle) {
-    return std::max({triangle.x, triangle.y, triangle.z}) < mesh.vertices.size();
-  });
 }
 
 float largest_of(const TreeRecord& tree) {
@@ -37,18 +28,21 @@ float largest_of(const TreeRecord& tree) {
   return largest;
 }
 
-}  // namespace
-
 bool has_bounds(const FrameHead& frame, float largest, const RenderPlan& plan) {
   const EyeProjection eye = project_eye(frame, largest);
   return plan.layout.store == sim::StoreSize::k64KB ? eye.is_trusted : eye.has_bounds;
+}
+
+}  // namespace
+
+bool has_bounds(const FrameHead& frame, const TreeRecord& tree, const RenderPlan& plan) {
+  return has_bounds(frame, largest_of(tree), plan);
 }
 
 bool has_bounds(const SceneInput& input, const RenderPlan& plan, const ViewRequest& view) {
   const PackedScene* const packed = std::get_if<PackedScene>(&input.content);
   const Mesh* const mesh = std::get_if<Mesh>(&input.content);
   const float largest = packed != nullptr ? largest_of(packed->view.tree) : largest_of(*mesh);
-  if (!std::isfinite(largest) || (mesh != nullptr && !has_all_vertices(*mesh))) return true;
   const PointSource points = [&](const PointVisitor& visitor) {
     if (packed != nullptr) {
       visit_points(packed->view, packed->file.bytes, visitor);

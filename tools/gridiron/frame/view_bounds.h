@@ -11,7 +11,7 @@ namespace gridiron::tool {
 /// Errors: Failure (kUsage) if the view has a defect.
 [[nodiscard]] bool has_bounds(const SceneInput& input, const RenderPlan& plan, const ViewRequest& view);
 
-/// The same of a frame. @param largest  no coordinate of the scene is larger.
-[[nodiscard]] bool has_bounds(const FrameHead& frame, float largest, const RenderPlan& plan);
+/// The same of a frame of an image with a tree.
+[[nodiscard]] bool has_bounds(const FrameHead& frame, const TreeRecord& tree, const RenderPlan& plan);
 
 }  // namespace gridiron::tool
