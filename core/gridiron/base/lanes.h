@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #if defined(__AVX512F__) || defined(__AVX2__) || defined(__SSE2__)
@@ -333,8 +334,10 @@ struct Lanes {
         select(mask, Float(reinterpret_cast<FloatVector>(a.v)), Float(reinterpret_cast<FloatVector>(b.v)));
     return {reinterpret_cast<IntVector>(chosen.v)};
   }
-  /// The words so many bytes behind `base`, which are aligned to 4 bytes.
-  [[nodiscard]] static GRIDIRON_INLINE Int gather(const std::uint32_t* base, Int bytes) {
+  /// The words so many bytes behind `base`, which are aligned to 4 bytes: of std::uint32_t or float.
+  template <class Word>
+  [[nodiscard]] static GRIDIRON_INLINE Int gather(const Word* base, Int bytes) {
+    static_assert(sizeof(Word) == 4);
 #if defined(__AVX512F__)
     if constexpr (W == 16) {
       return {IntVector(_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), static_cast<__mmask16>(kAllBits),
@@ -347,7 +350,7 @@ struct Lanes {
     }
 #endif
     Int result;
-    for (int i = 0; i < W; ++i) result.v[i] = static_cast<std::int32_t>(base[bytes.v[i] / 4]);
+    for (int i = 0; i < W; ++i) result.v[i] = std::bit_cast<std::int32_t>(base[bytes.v[i] / 4]);
     return result;
   }
   /// Stores `value` in the lanes of the mask. @param target  W words, aligned to 4 * W bytes.

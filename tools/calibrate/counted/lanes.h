@@ -316,12 +316,13 @@ struct Lanes {
     return Counted<std::uint32_t>::made(bits, emit(OpClass::kShuffle, bits, is_negative));
   }
   /// A word after the other.
-  [[nodiscard]] static Int gather(const Counted<std::uint32_t>* base, Int bytes) {
+  template <class Word>
+  [[nodiscard]] static Int gather(const Counted<Word>* base, Int bytes) {
     Native::Int words = Native::Int::splat(0);
     Node node = bytes.node;
     for (int i = 0; i < W; ++i) {
-      const Counted<std::uint32_t>& word = base[bytes.v[i] / 4];
-      words.v[i] = static_cast<std::int32_t>(word.value);
+      const Counted<Word>& word = base[bytes.v[i] / 4];
+      words.v[i] = std::bit_cast<std::int32_t>(word.value);
       node = emit(OpClass::kShuffle, word.value, node, PipeModel::current().splat_of(&word.value, word.value));
     }
     return {words, node};

@@ -400,20 +400,15 @@ class TileTracer {
     const std::uint32_t first = by0 * kRow + bx0;
     const Float x = Float(kTilePlaces<Width>.block_column[first]) - drawn.offset_x;
     const Float y = Float(kTilePlaces<Width>.block_row[first]) - drawn.offset_y;
-    // From block to block.
-    Float row[4], right[4], down[4];
-    for (int k = 0; k < 4; ++k) {
-      row[k] = drawn.at(k, x, y);
-      right[k] = drawn.x[k] * Float(kBlockStep);
-      down[k] = drawn.y[k] * Float(kBlockStep);
-    }
+    Float row[4];
+    for (int k = 0; k < 4; ++k) row[k] = drawn.at(k, x, y);
     for (std::uint32_t by = by0; by <= by1; ++by) {
       Float value[4] = {row[0], row[1], row[2], row[3]};
       for (std::uint32_t bx = bx0; bx <= bx1; ++bx) {
         GRIDIRON_TRY(draw_block<false>(drawn, by * kRow + bx, value));
-        for (int k = 0; k < 4; ++k) value[k] = value[k] + right[k];
+        for (int k = 0; k < 4; ++k) value[k] = L::bounded_sum(drawn.x[k], Float(kBlockStep), value[k]);
       }
-      for (int k = 0; k < 4; ++k) row[k] = row[k] + down[k];
+      for (int k = 0; k < 4; ++k) row[k] = L::bounded_sum(drawn.y[k], Float(kBlockStep), row[k]);
     }
     return Status::kOk;
   }

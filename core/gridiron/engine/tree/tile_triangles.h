@@ -192,6 +192,29 @@ struct TileGroup {
   std::uint32_t careful;  ///< have no bound: exact arithmetic decides their pixels
 };
 
+/// @returns for each box of pixels a 1 / t that all its pixels' hits have at least: the least of the blocks that it lies
+/// in, up to two across and two down, or `least_near`, the tile's. A box that is no box gives any number. Tiles of 64 KB
+/// have no room for the code.
+template <class L, std::uint32_t Width, std::uint32_t MostLanes>
+[[nodiscard]] GRIDIRON_INLINE typename L::Float least_near_of_boxes(const TileMemory<Width, MostLanes>& memory,
+                                                                    typename L::Int ix0, typename L::Int iy0,
+                                                                    typename L::Int ix1, typename L::Int iy1,
+                                                                    float least_near) {
+  using Float = typename L::Float;
+  using Int = typename L::Int;
+  // A block's number times 4 is the bytes to its entry, and its first column; rows of blocks are Width bytes long.
+  static_assert(kBlockWidth == 4 && (Width == 32 || Width == 64));
+  static constexpr int kShift = Width == 64 ? 4 : 3;
+  const Int first = Int::splat(Width - kBlockWidth);
+  const Int column0 = ix0 & first, column1 = ix1 & first;
+  const Int row0 = (iy0 & first) << kShift, row1 = (iy1 & first) << kShift;
+  const auto at = [&](Int row, Int column)
+                      GRIDIRON_INLINE_LAMBDA { return L::floats_of(L::gather(memory.least_near, row | column)); };
+  const auto is_small = (column1 < column0 + Int::splat(2 * kBlockWidth)) & (row1 < row0 + Int::splat(2 * Width));
+  const Float least = L::min(L::min(at(row0, column0), at(row0, column1)), L::min(at(row1, column0), at(row1, column1)));
+  return L::select(is_small, least, Float(least_near));
+}
+
 /// Makes functions of L::kCount triangles of the queue, those from `first` on, relative to the middle of each box.
 /// @param there  lanes with triangles. @param least_near  1 / t below which everything is hidden.
 template <class L, std::uint32_t Width, std::uint32_t MostLanes>
@@ -268,7 +291,9 @@ template <class L, std::uint32_t Width, std::uint32_t MostLanes>
     return L::bounded_sum(L::abs(along_x), x1, L::bounded_sum(L::abs(along_y), y1, value));
   };
   const Float near_value = near_w - near_error, near_span = near_error + near_error;
-  Int none = L::words_of(most_in_box(near_value, near_x, near_y) + near_span - Float(least_near));
+  Float least(least_near);
+  if constexpr (L::kCount != 1 && Width > 16) least = least_near_of_boxes<L>(memory, ix0, iy0, ix1, iy1, least_near);
+  Int none = L::words_of(most_in_box(near_value, near_x, near_y) + near_span - least);
   const Int sign = L::words_of(volume) & Int::splat(0x80000000u);
   const auto turned = [&](Float a) GRIDIRON_INLINE_LAMBDA { return L::floats_of(L::words_of(a) ^ sign); };
   for (std::uint32_t i = 0; i < 3; ++i) {
