@@ -112,20 +112,19 @@ GRIDIRON_RARE inline EyeProjection project_eye(const FrameHead& frame, float lar
     eye.rows[2][i] = step_x[j] * step_y[k] - step_x[k] * step_y[j];
     det += first[i] * eye.rows[2][i];
   }
-  for (int row = 0; row < 3; ++row) {
-    for (double& value : eye.rows[row]) {
-      value = value / det;
-      eye.sizes[row] += magnitude(value);
-    }
-  }
   const bool is_of_any_size = far > 0x1p-80 && far < 0x1p80;
-  const double unit = is_of_any_size ? unit_of(far * eye.sizes[2]) : 1.0;
+  const double w_size = magnitude(eye.rows[2][0]) + magnitude(eye.rows[2][1]) + magnitude(eye.rows[2][2]);
+  const double unit = is_of_any_size ? unit_of(far * w_size / magnitude(det)) : 1.0;
   eye.unit = static_cast<float>(unit);
   eye.per_off = static_cast<float>(1.01 * kFloatUnit / unit);
+  const double divisor = det / unit;
   for (int row = 0; row < 3; ++row) {
-    for (double& value : eye.rows[row]) value = value * unit;
-    eye.sizes[row] = eye.sizes[row] * unit;
-    for (int axis = 0; axis < 3; ++axis) eye.offsets[row] -= eye.rows[row][axis] * eye.eye[axis];
+    for (int axis = 0; axis < 3; ++axis) {
+      double& value = eye.rows[row][axis];
+      value = value / divisor;
+      eye.sizes[row] += magnitude(value);
+      eye.offsets[row] -= value * eye.eye[axis];
+    }
   }
   // Of the eye's rows, not of a tile's.
   const double widest = double(frame.width) + double(frame.height) + 4.0 * kMostTileWidth;

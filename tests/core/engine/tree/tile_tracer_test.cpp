@@ -277,6 +277,72 @@ TYPED_TEST(TileTracerTest, TiesAreBroken) {
   }
 }
 
+// All at one distance: what was drawn before in a triangle's blocks does not hide it.
+TYPED_TEST(TileTracerTest, OfFlatPatchesTheLowestIdIsHit) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    TestMesh mesh = joined(make_random_soup(300, 0.9f, seed), make_random_soup(1500, 0.4f, seed + 10));
+    for (Vec3& p : mesh.vertices) p.z = 0;
+    expect_exact<TypeParam>(mesh, view_of(kCameras[0], 45, 37));
+    mesh = joined(make_random_soup(1500, 0.4f, seed), make_random_soup(300, 0.9f, seed + 10));
+    for (Vec3& p : mesh.vertices) p.z = 0;
+    expect_exact<TypeParam>(mesh, view_of(kCameras[0], 45, 37));
+  }
+}
+
+// Walls of a few blocks hide triangles behind them, and no others.
+TYPED_TEST(TileTracerTest, BlocksHideWhatIsBehindThem) {
+  TestMesh walls = make_random_soup(40, 1.5f, 4);
+  for (Vec3& p : walls.vertices) p.z = 1.5f + 0.1f * p.z;
+  const TestMesh mesh = joined(walls, make_random_soup(2000, 0.35f, 5));
+  for (const Camera& camera : kCameras) expect_exact<TypeParam>(mesh, view_of(camera, 45, 37));
+}
+
+// Every box of a tile's pixels.
+TYPED_TEST(TileTracerTest, BoxesAreAsNearAsTheLeastOfTheirBlocks) {
+  if constexpr (TypeParam::kCount != 1) {
+    using Int = typename TypeParam::Int;
+    constexpr std::uint32_t kLanes = TypeParam::kCount, kRow = kWidth / kBlockWidth;
+    const auto memory = std::make_unique<TileMemory<kWidth, kLanes < 4 ? 4 : kLanes>>();
+    for (std::uint32_t block = 0; block < kRow * kRow; ++block) {
+      memory->least_near[block] = static_cast<float>(block * 37 % 64 + 2);
+    }
+    alignas(64) std::uint32_t box[4][kLanes] = {};
+    alignas(64) float wanted[kLanes] = {}, found[kLanes];
+    std::uint32_t count = 0;
+    const auto check = [&] {
+      least_near_of_boxes<TypeParam>(*memory, Int::load(box[0]), Int::load(box[1]), Int::load(box[2]),
+                                     Int::load(box[3]), 1.0f)
+          .store(found);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        ASSERT_EQ(found[i], wanted[i]) << box[0][i] << ", " << box[1][i] << " to " << box[2][i] << ", " << box[3][i];
+      }
+      count = 0;
+    };
+    for (std::uint32_t y0 = 0; y0 < kWidth; ++y0) {
+      for (std::uint32_t y1 = y0; y1 < kWidth; ++y1) {
+        for (std::uint32_t x0 = 0; x0 < kWidth; ++x0) {
+          for (std::uint32_t x1 = x0; x1 < kWidth; ++x1) {
+            const std::uint32_t bx0 = x0 / kBlockWidth, by0 = y0 / kBlockWidth, bx1 = x1 / kBlockWidth,
+                                by1 = y1 / kBlockWidth;
+            float least = kFloatMax;
+            for (std::uint32_t by = by0; by <= by1; ++by) {
+              for (std::uint32_t bx = bx0; bx <= bx1; ++bx) {
+                least = std::min(least, memory->least_near[by * kRow + bx]);
+              }
+            }
+            const std::uint32_t sides[4] = {x0, y0, x1, y1};
+            for (int i = 0; i < 4; ++i) box[i][count] = sides[i];
+            wanted[count] = bx1 - bx0 < 2 && by1 - by0 < 2 ? least : 1.0f;
+            if (++count == kLanes) check();
+            if (testing::Test::HasFatalFailure()) return;
+          }
+        }
+      }
+    }
+    check();
+  }
+}
+
 TYPED_TEST(TileTracerTest, HitsBeyondTheFarEndDoNotCount) {
   View view = view_of(kCameras[0], 32, 32);
   for (const float t_far : {3.2f, 4.0f, 4.5f}) {
