@@ -120,7 +120,8 @@ class TemplatePort {
 
   Command& at(std::uint32_t index) { return queue_[(first_ + index) % kQueueDepth]; }
 
-  Status enqueue(const Command& command) {
+  // Not inlined: one copy for gets and puts saves local store.
+  __attribute__((noinline)) Status enqueue(const Command& command) {
     GRIDIRON_TRY(check_transfer(limits(), command.engine.bytes == 0 ? 0 : board_.bus_address(command.local),
                                 command.address, command.engine.bytes, command.tag));
     if (!board_.holds(command.local, command.engine.bytes)) return Status::kTransferLocalRange;

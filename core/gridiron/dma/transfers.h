@@ -96,7 +96,7 @@ class Transfers {
 
  private:
   // Counts one command of `tag`, waiting for the tag that began longest ago while the queue is full.
-  [[nodiscard]] GRIDIRON_OUTLINE Status make_room(std::uint8_t tag) {
+  [[nodiscard]] Status make_room(std::uint8_t tag) {
     const std::uint32_t depth = platform_.limits().queue_depth - output_share_;
     if (is_counted(tag) && pending_count_ >= depth) [[unlikely]] {
       std::uint8_t oldest = 0;
