@@ -169,7 +169,8 @@ inline constexpr WorkKind kTileWorkKinds[] = {
     {TileWork::kTinyPlace, "tiny_place"}, {TileWork::kTinyPixel, "tiny_pixel"}, {TileWork::kDrawn, "drawn"},
     {TileWork::kLargeTriangle, "large_triangle"}, {TileWork::kBlockGroup, "block_group"}, {TileWork::kBlock, "block"},
     {TileWork::kTakenBlock, "taken_block"}, {TileWork::kCoveredBlock, "covered_block"},
-    {TileWork::kFacingBlock, "facing_block"}, {TileWork::kOpenPixel, "open_pixel"}, {TileWork::kChangedBlock, "changed_block"}};
+    {TileWork::kFacingBlock, "facing_block"}, {TileWork::kOpenPixel, "open_pixel"},
+    {TileWork::kChangedBlock, "changed_block"}};
 // clang-format on
 
 /// The tree. Machine profiles have its prices.

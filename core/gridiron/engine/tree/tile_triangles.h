@@ -192,9 +192,9 @@ struct TileGroup {
   std::uint32_t careful;  ///< have no bound: exact arithmetic decides their pixels
 };
 
-/// @returns for each box of pixels a 1 / t that all its pixels' hits have at least: the least of the blocks that it lies
-/// in, up to two across and two down, or `least_near`, the tile's. A box that is no box gives any number. Tiles of 64 KB
-/// have no room for the code.
+/// @returns for each box of pixels a 1 / t that all its pixels' hits have at least: the least of the blocks that it
+/// lies in, up to two across and two down, or `least_near`, the tile's. A box that is no box gives any number. Tiles of
+/// 64 KB have no room for the code.
 template <class L, std::uint32_t Width, std::uint32_t MostLanes>
 [[nodiscard]] GRIDIRON_INLINE typename L::Float least_near_of_boxes(const TileMemory<Width, MostLanes>& memory,
                                                                     typename L::Int ix0, typename L::Int iy0,
@@ -211,8 +211,9 @@ template <class L, std::uint32_t Width, std::uint32_t MostLanes>
   const auto at = [&](Int row, Int column)
                       GRIDIRON_INLINE_LAMBDA { return L::floats_of(L::gather(memory.least_near, row | column)); };
   const auto is_small = (column1 < column0 + Int::splat(2 * kBlockWidth)) & (row1 < row0 + Int::splat(2 * Width));
-  const Float least = L::min(L::min(at(row0, column0), at(row0, column1)), L::min(at(row1, column0), at(row1, column1)));
-  return L::select(is_small, least, Float(least_near));
+  const Float upper = L::min(at(row0, column0), at(row0, column1));
+  const Float lower = L::min(at(row1, column0), at(row1, column1));
+  return L::select(is_small, L::min(upper, lower), Float(least_near));
 }
 
 /// Makes functions of L::kCount triangles of the queue, those from `first` on, relative to the middle of each box.
