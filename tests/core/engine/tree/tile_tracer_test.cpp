@@ -279,7 +279,7 @@ TYPED_TEST(TileTracerTest, TiesAreBroken) {
 
 // All at one distance: what was drawn before in a triangle's blocks does not hide it.
 TYPED_TEST(TileTracerTest, OfFlatPatchesTheLowestIdIsHit) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
     TestMesh mesh = joined(make_random_soup(300, 0.9f, seed), make_random_soup(1500, 0.4f, seed + 10));
     for (Vec3& p : mesh.vertices) p.z = 0;
     expect_exact<TypeParam>(mesh, view_of(kCameras[0], 45, 37));
