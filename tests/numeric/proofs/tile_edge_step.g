@@ -25,8 +25,7 @@
 %source core/gridiron/engine/tree/tile_tracer.h
 %line start[k] = L::bounded_sum(x[k], column, kLanes > kBlockWidth ? L::bounded_sum(y[k], row, value[k]) : value[k]);
 %line return L::bounded_sum(x[k], column, L::bounded_sum(y[k], row, start[k]));
-%line down[k] = drawn.y[k] * Float(kBlockStep);
-%line for (int k = 0; k < 4; ++k) row[k] = row[k] + down[k];
+%line for (int k = 0; k < 4; ++k) row[k] = L::bounded_sum(drawn.y[k], Float(kBlockStep), row[k]);
 %round start_16 = 0 + (f * row + value)
 %round at_16 = 0 + (f * line + start_16)
 %round block_1 = at_16 + exactly(f * step)

@@ -23,8 +23,8 @@
 %line static constexpr std::uint32_t kFewBlocks = kLanes == 16 ? 6 : kLanes == 1 ? 2 : 4;
 %line start[k] = L::bounded_sum(x[k], column, kLanes > kBlockWidth ? L::bounded_sum(y[k], row, value[k]) : value[k]);
 %line return L::bounded_sum(x[k], column, L::bounded_sum(y[k], row, start[k]));
-%line for (int k = 0; k < 4; ++k) value[k] = value[k] + right[k];
-%line for (int k = 0; k < 4; ++k) row[k] = row[k] + down[k];
+%line for (int k = 0; k < 4; ++k) value[k] = L::bounded_sum(drawn.x[k], Float(kBlockStep), value[k]);
+%line for (int k = 0; k < 4; ++k) row[k] = L::bounded_sum(drawn.y[k], Float(kBlockStep), row[k]);
 %round start_16 = 0 + (0 + value)
 %round at_16 = 0 + (0 + start_16)
 %round block_16 = ((((at_16 + 0) + 0) + 0) + 0) + 0

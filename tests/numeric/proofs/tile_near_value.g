@@ -23,8 +23,8 @@
 %source core/gridiron/engine/tree/tile_tracer.h
 %line start[k] = L::bounded_sum(x[k], column, kLanes > kBlockWidth ? L::bounded_sum(y[k], row, value[k]) : value[k]);
 %line return L::bounded_sum(x[k], column, L::bounded_sum(y[k], row, start[k]));
-%line for (int k = 0; k < 4; ++k) value[k] = value[k] + right[k];
-%line for (int k = 0; k < 4; ++k) row[k] = row[k] + down[k];
+%line for (int k = 0; k < 4; ++k) value[k] = L::bounded_sum(drawn.x[k], Float(kBlockStep), value[k]);
+%line for (int k = 0; k < 4; ++k) row[k] = L::bounded_sum(drawn.y[k], Float(kBlockStep), row[k]);
 %line for (int k = kCovered ? 3 : 0; k < 4; ++k) value[k] = value[k] + f.step[k];
 # What decides, by the sign.
 %line ahead[group] = value[3] - Float::load(stored + group * kLanes);
