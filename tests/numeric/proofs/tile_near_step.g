@@ -78,7 +78,7 @@
 # set_up_group(): all hidden.
 %source core/gridiron/engine/tree/tile_triangles.h
 %line return L::bounded_sum(L::abs(along_x), x1, L::bounded_sum(L::abs(along_y), y1, value));
-%line Int none = L::words_of(most_in_box(near_value, near_x, near_y) + near_span - Float(least_near));
+%line Int none = L::words_of(most_in_box(near_value, near_x, near_y) + near_span - least);
 %round in_box = (0 + (f * line + near_value)) + near_span
 
 # In exact arithmetic, apart from the error.
