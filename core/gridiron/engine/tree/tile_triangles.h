@@ -193,8 +193,8 @@ struct TileGroup {
 };
 
 /// @returns for each box of pixels a 1 / t that all its pixels' hits have at least: the least of the blocks that it
-/// lies in, up to two across and two down, or `least_near`, the tile's. A box that is no box gives any number. Tiles of
-/// 64 KB have no room for the code.
+/// lies in, up to two across and two down, or `least_near`, the tile's. A box that is no box gives any number. One lane
+/// has no gather, and tiles of 64 KB have no room for the code.
 template <class L, std::uint32_t Width, std::uint32_t MostLanes>
 [[nodiscard]] GRIDIRON_INLINE typename L::Float least_near_of_boxes(const TileMemory<Width, MostLanes>& memory,
                                                                     typename L::Int ix0, typename L::Int iy0,
