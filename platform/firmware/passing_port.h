@@ -21,7 +21,7 @@ class PassingPort {
     return port_.put(local, address, bytes, tag);
   }
   Status wait(TagMask tags) { return port_.wait(tags); }
-  TileClaim claim_tile() { return port_.claim_tile(); }
+  ItemClaim claim_item() { return port_.claim_item(); }
 
  private:
   P& port_;

@@ -42,13 +42,13 @@ class CountingPort {
   }
   Status wait(TagMask tags) { return port_.wait(tags); }
 
-  TileClaim claim_tile() {
+  ItemClaim claim_item() {
     finish_tile();
     const std::uint64_t before = instructions();  // a tile's claim is its own
-    const TileClaim claim = port_.claim_tile();
-    if (claim.kind == TileClaim::Kind::kTile) {
+    const ItemClaim claim = port_.claim_item();
+    if (claim.kind == ItemClaim::Kind::kItem) {
       has_tile_ = true;
-      tile_id_ = claim.tile_id;
+      tile_id_ = claim.item;
       transfers_before_ = transfers_;
       instructions_before_ = before;
       ++claimed_;

@@ -66,11 +66,11 @@ class DeskPort {
     return status;
   }
 
-  TileClaim claim_tile() {
-    if (tiles_.must_stop()) return {TileClaim::Kind::kAborted, 0};
+  ItemClaim claim_item() {
+    if (tiles_.must_stop()) return {ItemClaim::Kind::kAborted, 0};
     const std::uint32_t claim = tiles_.next_tile(), count = tiles_.tile_count();
-    if (claim >= count) return {TileClaim::Kind::kNone, 0};
-    return {TileClaim::Kind::kTile, middle_out(claim, count)};
+    if (claim >= count) return {ItemClaim::Kind::kNone, 0};
+    return {ItemClaim::Kind::kItem, middle_out(claim, count)};
   }
 
  private:

@@ -87,11 +87,11 @@ class TemplatePort {
     return status;
   }
 
-  TileClaim claim_tile() {
-    if (board_.must_stop()) return {TileClaim::Kind::kAborted, 0};
+  ItemClaim claim_item() {
+    if (board_.must_stop()) return {ItemClaim::Kind::kAborted, 0};
     const std::uint32_t claim = board_.next_tile(), count = board_.tile_count();
-    if (claim >= count) return {TileClaim::Kind::kNone, 0};
-    return {TileClaim::Kind::kTile, middle_out(claim, count)};
+    if (claim >= count) return {ItemClaim::Kind::kNone, 0};
+    return {ItemClaim::Kind::kItem, middle_out(claim, count)};
   }
 
  private:

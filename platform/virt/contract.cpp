@@ -40,7 +40,7 @@ class BoardBench {
         board_(arena_.control, address_of(arena_.local), sizeof arena_.local),
         port_(board_) {
     arena_.control.next_tile = 0;
-    arena_.control.tile_count = contract::kTileCount;
+    arena_.control.tile_count = contract::kItemCount;
     arena_.control.stop = 0;
   }
   PlatformType& platform() { return port_; }

@@ -46,7 +46,7 @@ class BoardBench {
 
   BoardBench() {
     control.next_tile = 0;
-    control.tile_count = contract::kTileCount;
+    control.tile_count = contract::kItemCount;
   }
   PlatformType& platform() { return port_; }
   std::byte* local() { return arena0.local; }

@@ -14,7 +14,7 @@ namespace gridiron::contract {
 /// Sizes that a bench must offer. Local memory begins on 128 bytes, main memory on 4,096.
 inline constexpr std::uint32_t kLocalBytes = 32 * 1024;
 inline constexpr std::uint32_t kMainBytes = 64 * 1024;
-inline constexpr std::uint32_t kTileCount = 7;
+inline constexpr std::uint32_t kItemCount = 7;
 
 /// One core of a platform under test, with memory to play with. Fresh for every check.
 ///
@@ -271,17 +271,17 @@ Failure the_whole_queue_can_be_used(B& bench) {
 }
 
 template <Bench B>
-Failure every_tile_is_claimed_once_then_none(B& bench) {
+Failure every_item_is_claimed_once_then_none(B& bench) {
   std::uint32_t seen = 0;
-  for (std::uint32_t i = 0; i < kTileCount; ++i) {
-    const TileClaim claim = bench.platform().claim_tile();
-    GRIDIRON_CONTRACT_REQUIRE(claim.kind == TileClaim::Kind::kTile);
-    GRIDIRON_CONTRACT_REQUIRE(claim.tile_id < kTileCount);
-    GRIDIRON_CONTRACT_REQUIRE((seen >> claim.tile_id & 1) == 0);
-    seen |= 1u << claim.tile_id;
+  for (std::uint32_t i = 0; i < kItemCount; ++i) {
+    const ItemClaim claim = bench.platform().claim_item();
+    GRIDIRON_CONTRACT_REQUIRE(claim.kind == ItemClaim::Kind::kItem);
+    GRIDIRON_CONTRACT_REQUIRE(claim.item < kItemCount);
+    GRIDIRON_CONTRACT_REQUIRE((seen >> claim.item & 1) == 0);
+    seen |= 1u << claim.item;
   }
   for (std::uint32_t i = 0; i < 3; ++i) {
-    GRIDIRON_CONTRACT_REQUIRE(bench.platform().claim_tile().kind == TileClaim::Kind::kNone);
+    GRIDIRON_CONTRACT_REQUIRE(bench.platform().claim_item().kind == ItemClaim::Kind::kNone);
   }
   return nullptr;
 }
@@ -411,7 +411,7 @@ constexpr void for_each_check(Run&& run) {
   run("one_wait_takes_many_tags", one_wait_takes_many_tags<B>, false);
   run("waiting_for_nothing_ends_at_once", waiting_for_nothing_ends_at_once<B>, false);
   run("the_whole_queue_can_be_used", the_whole_queue_can_be_used<B>, false);
-  run("every_tile_is_claimed_once_then_none", every_tile_is_claimed_once_then_none<B>, false);
+  run("every_item_is_claimed_once_then_none", every_item_is_claimed_once_then_none<B>, false);
   run("a_size_of_0_is_refused", a_size_of_0_is_refused<B>, true);
   run("a_size_that_is_no_multiple_is_refused", a_size_that_is_no_multiple_is_refused<B>, true);
   run("a_size_above_the_limit_is_refused", a_size_above_the_limit_is_refused<B>, true);

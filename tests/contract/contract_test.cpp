@@ -15,7 +15,7 @@ namespace {
 /// Main memory, an arena and tiles, shared by all benches.
 class HostBench {
  public:
-  explicit HostBench(std::uint32_t queue_depth) : memory_(kMainBytes + 8192), tiles_(0, kTileCount) {
+  explicit HostBench(std::uint32_t queue_depth) : memory_(kMainBytes + 8192), tiles_(0, kItemCount) {
     region_ = *memory_.allocate(kMainBytes, 4096);
     limits_.queue_depth = queue_depth;
   }
@@ -76,7 +76,7 @@ class TemplateBench : public HostBench {
   using PlatformType = port::TemplatePort<HostBoard, kDepth>;
   static constexpr bool kChecksRules = true, kChecksQueue = true, kChecksOverlap = false;
 
-  TemplateBench() : HostBench(kDepth), board_(memory_, std::span(arena_->bytes), kTileCount), port_(board_) {
+  TemplateBench() : HostBench(kDepth), board_(memory_, std::span(arena_->bytes), kItemCount), port_(board_) {
     board_.polls_per_command = kPolls;
   }
   ~TemplateBench() { EXPECT_EQ(board_.starts_while_busy, 0u); }
@@ -150,7 +150,7 @@ TYPED_TEST(Contract, Holds) {
 class BoundedHostBoard : public HostBoard {
  public:
   BoundedHostBoard(sim::SimMemory& memory, std::span<std::byte> arena, std::uint64_t first, std::uint64_t byte_count)
-      : HostBoard(memory, arena, kTileCount), first_(first), byte_count_(byte_count) {}
+      : HostBoard(memory, arena, kItemCount), first_(first), byte_count_(byte_count) {}
 
   [[nodiscard]] bool reaches(MainAddress address, std::uint32_t bytes) const {
     const std::uint64_t offset = address.value - first_;

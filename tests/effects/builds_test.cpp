@@ -92,7 +92,7 @@ class NoPlatform {
   Status get(void*, MainAddress, std::uint32_t, Tag) { return Status::kTransferFailed; }
   Status put(const void*, MainAddress, std::uint32_t, Tag) { return Status::kTransferFailed; }
   Status wait(TagMask) { return Status::kOk; }
-  TileClaim claim_tile() { return {}; }
+  ItemClaim claim_item() { return {}; }
 };
 
 TEST(Builds, WhatWasLeftOutIsNamed) {

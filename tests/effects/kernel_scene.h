@@ -110,11 +110,11 @@ class KernelBoard {
     pending_.resize(kept);
     return Status::kOk;
   }
-  TileClaim claim_tile() {
+  ItemClaim claim_item() {
     if (next_tile_ == tile_count_) return {};
     tile_bytes.push_back(0);
     const std::uint32_t tile = next_tile_++;
-    return {TileClaim::Kind::kTile, options_.claims_backwards ? tile_count_ - 1 - tile : tile};
+    return {ItemClaim::Kind::kItem, options_.claims_backwards ? tile_count_ - 1 - tile : tile};
   }
   void note_stage(std::uint8_t stage) { stage_ = stage; }
 

@@ -80,15 +80,15 @@ TEST(FaultInjection, ADelayedTransferMovesNothingBeforeItsWait) {
 }
 
 TEST(FaultInjection, ClaimsCanBeAnsweredWithAnEnd) {
-  for (const TileClaim::Kind kind : {TileClaim::Kind::kAborted, TileClaim::Kind::kDeadline}) {
+  for (const ItemClaim::Kind kind : {ItemClaim::Kind::kAborted, ItemClaim::Kind::kDeadline}) {
     ProgramBench bench;
     bench.shape.tile_count = 5;
     const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte>) {
       FaultInjection<SimCore> faulty(core, {.claim = 3, .claim_answer = kind});
-      EXPECT_EQ(faulty.claim_tile().kind, TileClaim::Kind::kTile);
-      EXPECT_EQ(faulty.claim_tile().kind, TileClaim::Kind::kTile);
-      EXPECT_EQ(faulty.claim_tile().kind, kind);
-      EXPECT_EQ(faulty.claim_tile().kind, kind);
+      EXPECT_EQ(faulty.claim_item().kind, ItemClaim::Kind::kItem);
+      EXPECT_EQ(faulty.claim_item().kind, ItemClaim::Kind::kItem);
+      EXPECT_EQ(faulty.claim_item().kind, kind);
+      EXPECT_EQ(faulty.claim_item().kind, kind);
       return Status::kOk;
     });
     EXPECT_EQ(result.status, Status::kOk) << words(result);

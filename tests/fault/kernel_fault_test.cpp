@@ -178,10 +178,10 @@ TEST(KernelFault, ADelayedTransferChangesNothing) {
 TEST(KernelFault, AnEndOfClaimsEndsTheFrameBetweenTiles) {
   SmallFrame frame;
   for (std::uint64_t claim = 1; claim <= 5; ++claim) {
-    for (const TileClaim::Kind kind : {TileClaim::Kind::kAborted, TileClaim::Kind::kDeadline}) {
+    for (const ItemClaim::Kind kind : {ItemClaim::Kind::kAborted, ItemClaim::Kind::kDeadline}) {
       const ChipResult result =
           render_faulty(frame, {.claim = claim, .claim_answer = kind}, Completion::kLate, nullptr);
-      EXPECT_EQ(result.status, kind == TileClaim::Kind::kAborted ? Status::kAborted : Status::kDeadline);
+      EXPECT_EQ(result.status, kind == ItemClaim::Kind::kAborted ? Status::kAborted : Status::kDeadline);
       EXPECT_TRUE(result.violations.empty()) << "claim " << claim << ": " << words(result);
       EXPECT_EQ(result.trace.tiles[claim - 1 < 4 ? claim - 1 : 3].packed.empty(), claim != 5) << "claim " << claim;
     }

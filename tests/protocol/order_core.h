@@ -100,8 +100,8 @@ class OrderCore {
     }
     return finish_call(0x5741u ^ std::uint64_t{tags.bits} << 16);
   }
-  TileClaim claim_tile() {
-    const TileClaim claim = core_.claim_tile();
+  ItemClaim claim_item() {
+    const ItemClaim claim = core_.claim_item();
     static_cast<void>(finish_call(0xC1A1u));
     return claim;
   }

@@ -58,10 +58,10 @@ ChipResult run_case(access::Which which, Completion completion, std::uint32_t th
     env.host_of_input = bench.memory().bytes_at(bench.input(), 64).data();
     std::memcpy(&env.same_as_input, env.host_of_input, sizeof env.same_as_input);
     for (;;) {
-      const TileClaim claim = core.claim_tile();
-      if (claim.kind == TileClaim::Kind::kAborted) return Status::kAborted;
-      if (claim.kind == TileClaim::Kind::kNone) return Status::kOk;
-      if (claim.tile_id != 3) continue;
+      const ItemClaim claim = core.claim_item();
+      if (claim.kind == ItemClaim::Kind::kAborted) return Status::kAborted;
+      if (claim.kind == ItemClaim::Kind::kNone) return Status::kOk;
+      if (claim.item != 3) continue;
       const SimCore::AccessScope scope(core, __builtin_frame_address(0));
       GRIDIRON_TRY(access::run(which, env, core, data.data() + kEnvBytes));
     }

@@ -91,7 +91,7 @@ TEST(HostWorkers, ACoreWithoutMemoryEndsTheFrameWithAStatus) {
     const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte>) {
       if (begun++ == core_without) throw std::bad_alloc();
       // This ends only if the others are told to stop.
-      while (core.claim_tile().kind != TileClaim::Kind::kAborted) std::this_thread::yield();
+      while (core.claim_item().kind != ItemClaim::Kind::kAborted) std::this_thread::yield();
       ++stopped;
       return Status::kAborted;
     });

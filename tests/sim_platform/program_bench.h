@@ -48,10 +48,10 @@ class ProgramBench {
 template <class Act>
 Status for_each_tile(SimCore& core, Act&& act) {
   for (;;) {
-    const TileClaim claim = core.claim_tile();
-    if (claim.kind == TileClaim::Kind::kAborted) return Status::kAborted;
-    if (claim.kind != TileClaim::Kind::kTile) return Status::kOk;
-    GRIDIRON_TRY(act(claim.tile_id));
+    const ItemClaim claim = core.claim_item();
+    if (claim.kind == ItemClaim::Kind::kAborted) return Status::kAborted;
+    if (claim.kind != ItemClaim::Kind::kItem) return Status::kOk;
+    GRIDIRON_TRY(act(claim.item));
   }
 }
 

@@ -23,17 +23,17 @@ Status render_like(const ProgramBench& bench, SimCore& core, std::byte* data, st
   GRIDIRON_TRY(core.wait(TagMask::of(kTag)));
   for (std::uint32_t slot = 0;; slot = (slot + 1) % depth) {
     note();
-    const TileClaim claim = core.claim_tile();
-    if (claim.kind == TileClaim::Kind::kAborted) return Status::kAborted;
-    if (claim.kind == TileClaim::Kind::kNone) break;
+    const ItemClaim claim = core.claim_item();
+    if (claim.kind == ItemClaim::Kind::kAborted) return Status::kAborted;
+    if (claim.kind == ItemClaim::Kind::kNone) break;
     const Tag out{static_cast<std::uint8_t>(kFirstRotatingTag + slot)};
     work.add(Work::kTileStart);
     note();
     GRIDIRON_TRY(core.wait(TagMask::of(out)));
-    work.add(GridWork::kSliceStep, claim.tile_id * 10 + 1);
-    work.add(GridWork::kCellStep, claim.tile_id);
+    work.add(GridWork::kSliceStep, claim.item * 10 + 1);
+    work.add(GridWork::kCellStep, claim.item);
     note();
-    GRIDIRON_TRY(core.put(data + 256 + slot * 64, bench.output(claim.tile_id * 64), 64, out));
+    GRIDIRON_TRY(core.put(data + 256 + slot * 64, bench.output(claim.item * 64), 64, out));
   }
   GRIDIRON_TRY(core.wait(TagMask{((1u << depth) - 1) << kFirstRotatingTag}));
   return Status::kOk;
@@ -90,7 +90,7 @@ TEST(SimCoreTrace, OtherSlotsAreToldByTheirDistanceFromTheTiles) {
   bench.shape.tile_count = 7;
   bench.shape.output_depth = 3;
   const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte>) {
-    for (std::uint32_t ordinal = 0; core.claim_tile().kind == TileClaim::Kind::kTile; ++ordinal) {
+    for (std::uint32_t ordinal = 0; core.claim_item().kind == ItemClaim::Kind::kItem; ++ordinal) {
       for (std::uint32_t ahead = 0; ahead < 3; ++ahead) {
         const Tag tag{static_cast<std::uint8_t>(kFirstRotatingTag + (ordinal + ahead) % 3)};
         GRIDIRON_TRY(core.wait(TagMask::of(tag)));
@@ -127,7 +127,7 @@ TEST(SimCoreTrace, WorkCountersMayWrap) {
     WorkCounters work;
     work.counts[0] = 0xFFFFFFF0u;
     core.note_work(work.counts, kWorkKindCount);
-    static_cast<void>(core.claim_tile());
+    static_cast<void>(core.claim_item());
     work.counts[0] += 0x20;
     core.note_work(work.counts, kWorkKindCount);
     return Status::kOk;
@@ -140,7 +140,7 @@ TEST(SimCoreOrder, MovesWhatItIsToldTo) {
   bench.shape.tile_count = 1;
   bench.options.completion = Completion::kLate;
   const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte> data) {
-    while (core.claim_tile().kind == TileClaim::Kind::kTile) {
+    while (core.claim_item().kind == ItemClaim::Kind::kItem) {
     }
     const std::byte* const input = bench.memory().bytes_at(bench.input(), 128).data();
     EXPECT_FALSE(core.move_now(1));

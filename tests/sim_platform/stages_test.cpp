@@ -33,20 +33,20 @@ Status render_in_stages(const ProgramBench& bench, Core& core, std::byte* data, 
   };
   for (;;) {
     core.note_work(work.counts, kWorkKindCount);
-    const TileClaim claim = core.claim_tile();
-    if (claim.kind != TileClaim::Kind::kTile) break;
+    const ItemClaim claim = core.claim_item();
+    if (claim.kind != ItemClaim::Kind::kItem) break;
     go_to(Stage::kPrimary);
     work.add(Work::kRayGenerated, 3);
     go_to(Stage::kShadow);
     go_to(Stage::kShadow);
-    work.add(Work::kShadowRay, 10 + claim.tile_id);
+    work.add(Work::kShadowRay, 10 + claim.item);
     core.note_work(work.counts, kWorkKindCount);
     GRIDIRON_TRY(core.get(data, bench.input(), 256, kTag));
     GRIDIRON_TRY(core.wait(TagMask::of(kTag)));
     go_to(Stage::kOutput);
     work.add(Work::kColorGroup, 5);
     core.note_work(work.counts, kWorkKindCount);
-    GRIDIRON_TRY(core.put(data, bench.output(claim.tile_id * 64), 64, kTag));
+    GRIDIRON_TRY(core.put(data, bench.output(claim.item * 64), 64, kTag));
     GRIDIRON_TRY(core.wait(TagMask::of(kTag)));
     if (!ends_elsewhere) go_to(Stage::kPrimary);
   }
@@ -103,7 +103,7 @@ TEST(Stages, GoThroughTheDecoratorThatInjectsFaults) {
 TEST(Stages, ThatThereAreNotAreToldWithTheTile) {
   ProgramBench bench;
   const ChipResult result = bench.run([&](SimCore& core, std::span<std::byte> data) -> Status {
-    static_cast<void>(core.claim_tile());
+    static_cast<void>(core.claim_item());
     core.note_stage(kStageCount);
     return core.get(data.data(), bench.input(), 64, kTag);
   });

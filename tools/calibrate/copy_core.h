@@ -48,9 +48,9 @@ class CopyCore {
     return Status::kOk;
   }
   [[nodiscard]] Status wait(TagMask) { return Status::kOk; }
-  [[nodiscard]] TileClaim claim_tile() {
-    if (next_ == tiles_.size()) return {TileClaim::Kind::kNone, 0};
-    return {TileClaim::Kind::kTile, tiles_[next_++]};
+  [[nodiscard]] ItemClaim claim_item() {
+    if (next_ == tiles_.size()) return {ItemClaim::Kind::kNone, 0};
+    return {ItemClaim::Kind::kItem, tiles_[next_++]};
   }
 
  private:

@@ -89,9 +89,9 @@ class Transfers {
     }
   }
 
-  [[nodiscard]] TileClaim claim_tile() {
+  [[nodiscard]] ItemClaim claim_item() {
     note_work();
-    return platform_.claim_tile();
+    return platform_.claim_item();
   }
 
  private:

@@ -46,13 +46,13 @@ class TileRenderer {
       if (is_scene_shaded()) GRIDIRON_TRY(effects_.begin_frame());
     }
     share_queue();
-    // 2. Tiles.
+    // 2. Tiles: an item is a tile of the picture, row-major, 0 = top left.
     for (;;) {
-      const TileClaim claim = transfers_.claim_tile();
-      if (claim.kind == TileClaim::Kind::kAborted) return finish(Status::kAborted);
-      if (claim.kind == TileClaim::Kind::kDeadline) return finish(Status::kDeadline);
-      if (claim.kind == TileClaim::Kind::kNone) return finish(Status::kOk);
-      GRIDIRON_TRY(render_tile(claim.tile_id));
+      const ItemClaim claim = transfers_.claim_item();
+      if (claim.kind == ItemClaim::Kind::kAborted) return finish(Status::kAborted);
+      if (claim.kind == ItemClaim::Kind::kDeadline) return finish(Status::kDeadline);
+      if (claim.kind == ItemClaim::Kind::kNone) return finish(Status::kOk);
+      GRIDIRON_TRY(render_tile(claim.item));
     }
   }
 

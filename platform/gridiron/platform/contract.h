@@ -54,17 +54,17 @@ inline constexpr std::uint32_t kPortableCongruenceBytes = 32;     ///< both ends
 inline constexpr std::uint32_t kPortableMaxTransferBytes = 4096;  ///< largest transfer
 inline constexpr std::uint32_t kPortableBoundaryBytes = 4096;     ///< no transfer crosses a multiple in main memory
 
-/// Answer of claim_tile().
-struct TileClaim {
+/// Answer of claim_item().
+struct ItemClaim {
   /// What the core has to do.
   enum class Kind : std::uint8_t {
-    kTile,      ///< render tile `tile_id`
-    kNone,      ///< no tile is left
+    kItem,      ///< work on `item`
+    kNone,      ///< no item is left
     kAborted,   ///< the frame was asked to stop
     kDeadline,  ///< the frame's deadline has passed
   };
-  Kind kind = Kind::kNone;    ///< a tile, or why there is none
-  std::uint32_t tile_id = 0;  ///< row-major, 0 = top left; meaningful for kTile only
+  Kind kind = Kind::kNone;  ///< an item, or why there is none
+  std::uint32_t item = 0;   ///< below the pass's number of items; meaningful for kItem only
 };
 
 /// One core of a chip, as seen by the code that runs on it.
@@ -75,7 +75,11 @@ struct TileClaim {
 /// wait  blocks until every transfer of the tags in the mask has ended; afterwards loads see the data. A tag without
 ///       pending transfers is legal and ends at once. Returns kTransferFailed / kTransferTimedOut if one of them did
 ///       not succeed; all transfers of the mask have ended even then.
-/// claim_tile   next tile of the frame, or why there is none. Each tile is handed out exactly once per frame.
+/// claim_item   next item of the pass, or why there is none. Each item is handed out exactly once per pass.
+///
+/// A frame is a list of passes. A pass is one kernel and a number of items that cores claim; it begins when all items of
+/// the pass before it are done and their puts have ended, which the platform sees to. Rendering is one pass whose items
+/// are the tiles of the picture, row-major, 0 = top left.
 ///
 /// Rules: a size of 0 is an error (kTransferSize); a transfer that a limit forbids is an error and starts nothing;
 /// several transfers may share a tag; there is no order between transfers but through wait; two pending transfers
@@ -87,18 +91,18 @@ concept Platform = requires(P& platform, const P& constant, void* local, const v
   { platform.get(local, address, bytes, tag) } -> std::same_as<Status>;
   { platform.put(source, address, bytes, tag) } -> std::same_as<Status>;
   { platform.wait(tags) } -> std::same_as<Status>;
-  { platform.claim_tile() } -> std::same_as<TileClaim>;
+  { platform.claim_item() } -> std::same_as<ItemClaim>;
 };
 
 /// A platform that also receives the amount of work between its calls (the simulator's clock). Core calls it before
-/// every get, put, wait and claim_tile; `counts` has `count` entries, owned by core, which only grow within a frame.
+/// every get, put, wait and claim_item; `counts` has `count` entries, owned by core, which only grow within a pass.
 /// Optional: a board leaves it out and pays nothing.
 template <class P>
 concept WorkObserver = requires(P& platform, const std::uint32_t* counts, std::uint32_t count) {
   { platform.note_work(counts, count) } -> std::same_as<void>;
 };
 
-/// A platform that also receives the stage of a core. Core calls it when the stage changes, within a tile; every tile
+/// A platform that also receives the stage of a core. Core calls it when the stage changes, within an item; every item
 /// begins and ends with stage 0. `stage` is a Stage (base/stages.h) as a number. Optional, as above.
 template <class P>
 concept StageObserver = requires(P& platform, std::uint8_t stage) {

@@ -21,7 +21,7 @@ struct FaultPlan {
   Status status = Status::kTransferFailed;  ///< of kRefuse and kReport
 
   std::uint64_t claim = 0;  ///< claims are counted from 1; from this one on all are answered claim_answer; 0: never
-  TileClaim::Kind claim_answer = TileClaim::Kind::kAborted;  ///< kAborted, kDeadline or kNone
+  ItemClaim::Kind claim_answer = ItemClaim::Kind::kAborted;  ///< kAborted, kDeadline or kNone
 };
 
 /// Passes every call on to the platform it wraps, except where the plan makes it fail.
@@ -56,10 +56,10 @@ class FaultInjection {
   }
 
   /// As of Platform, until the plan ends the claims.
-  TileClaim claim_tile() {
+  ItemClaim claim_item() {
     ++claims_;
     if (plan_.claim != 0 && claims_ >= plan_.claim) return {plan_.claim_answer, 0};
-    return inner_.claim_tile();
+    return inner_.claim_item();
   }
 
   /// As of WorkObserver.

@@ -27,15 +27,15 @@ void ClaimOrder::leave(std::uint32_t core) {
   changed_.notify_all();
 }
 
-TileClaim OrderedCore::claim_tile() {
+ItemClaim OrderedCore::claim_item() {
   // The core's steps since its last claim.
   const sim::TileTrace& trace = inner_.end_trace();
   clock_.take(trace, in_tile_ ? tiles_++ : 0);
   order_.wait_for_turn(index_, clock_.now());
-  const TileClaim claim = inner_.claim_tile();
+  const ItemClaim claim = inner_.claim_item();
   clock_.take_claim();
-  in_tile_ = claim.kind == TileClaim::Kind::kTile;
-  if (in_tile_ && claim.tile_id < core_of_tile_.size()) core_of_tile_[claim.tile_id] = index_;
+  in_tile_ = claim.kind == ItemClaim::Kind::kItem;
+  if (in_tile_ && claim.item < core_of_tile_.size()) core_of_tile_[claim.item] = index_;
   return claim;
 }
 

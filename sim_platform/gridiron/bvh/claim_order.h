@@ -59,7 +59,7 @@ class OrderedCore {
   }
   Status wait(TagMask tags) { return inner_.wait(tags); }
   void note_work(const std::uint32_t* counts, std::uint32_t count) { inner_.note_work(counts, count); }
-  TileClaim claim_tile();
+  ItemClaim claim_item();
 
  private:
   sim::SimCore& inner_;

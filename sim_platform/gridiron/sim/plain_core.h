@@ -49,11 +49,11 @@ class PlainCore {
     return reads_in_place_ ? base_ + address.value : nullptr;
   }
 
-  TileClaim claim_tile() {
+  ItemClaim claim_item() {
     if (busy_) tiles_->tile_done();
-    const TileClaim claim = tiles_->claim();
-    busy_ = claim.kind == TileClaim::Kind::kTile;
-    if (busy_) tile_id_ = claim.tile_id;
+    const ItemClaim claim = tiles_->claim();
+    busy_ = claim.kind == ItemClaim::Kind::kItem;
+    if (busy_) tile_id_ = claim.item;
     return claim;
   }
 

@@ -213,19 +213,19 @@ void SimCore::leave_tile() {
   frame_->tiles->tile_done();
 }
 
-TileClaim SimCore::claim_tile() {
+ItemClaim SimCore::claim_item() {
   if (!after_last_tile_) {
     static_cast<void>(end_trace());
     is_trace_ended_ = false;
   }
   leave_tile();
   ++claims_;
-  TileClaim claim = sticky_error_ == Status::kOk ? frame_->tiles->claim() : TileClaim{TileClaim::Kind::kAborted, 0};
-  if (claim.kind == TileClaim::Kind::kTile) {
+  ItemClaim claim = sticky_error_ == Status::kOk ? frame_->tiles->claim() : ItemClaim{ItemClaim::Kind::kAborted, 0};
+  if (claim.kind == ItemClaim::Kind::kItem) {
     in_tile_ = true;
-    tile_id_ = claim.tile_id;
+    tile_id_ = claim.item;
     stage_ = 0;
-    random_state_ = frame_->seed ^ (0xD1B54A32D192ED03u * (std::uint64_t{claim.tile_id} + 1));
+    random_state_ = frame_->seed ^ (0xD1B54A32D192ED03u * (std::uint64_t{claim.item} + 1));
   } else {
     tile_id_ = kNoTile;
     stage_ = 0;

@@ -79,7 +79,7 @@ class SimCore {
   Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag);
   Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag);
   Status wait(TagMask tags);
-  TileClaim claim_tile();
+  ItemClaim claim_item();
   void note_work(const std::uint32_t* counts, std::uint32_t count);
   void note_stage(std::uint8_t stage);
 

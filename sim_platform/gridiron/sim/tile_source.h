@@ -31,14 +31,14 @@ class TileSource {
         progress_(std::move(progress)) {}
 
   /// Next tile, kNone after the last, kAborted once the frame has to stop.
-  [[nodiscard]] TileClaim claim() {
+  [[nodiscard]] ItemClaim claim() {
     if (stopped_.load(std::memory_order_relaxed) || (abort_ != nullptr && abort_->load(std::memory_order_relaxed))) {
-      return {TileClaim::Kind::kAborted, 0};
+      return {ItemClaim::Kind::kAborted, 0};
     }
     // A core claims once more after the last tile, so the counter cannot reach the end of its range.
     const std::uint64_t tile = next_.fetch_add(1, std::memory_order_relaxed);
-    if (tile >= end_tile_) return {TileClaim::Kind::kNone, 0};
-    return {TileClaim::Kind::kTile, static_cast<std::uint32_t>(tile)};
+    if (tile >= end_tile_) return {ItemClaim::Kind::kNone, 0};
+    return {ItemClaim::Kind::kItem, static_cast<std::uint32_t>(tile)};
   }
 
   /// Reports that a claimed tile is finished. Errors: whatever the progress call throws.

@@ -44,7 +44,7 @@ class TestPlatform {
   [[nodiscard]] const std::string& violation() const { return violation_; }
   void forget_commands() { commands_.clear(); }
 
-  std::vector<TileClaim> claims;               ///< answers to claim_tile, the last one for ever
+  std::vector<ItemClaim> claims;               ///< answers to claim_item, the last one for ever
   std::optional<std::size_t> failing_command;  ///< index of the command that fails
   Status failure = Status::kTransferFailed;
 
@@ -76,10 +76,10 @@ class TestPlatform {
     pending_ = std::move(rest);
     return fails ? failure : Status::kOk;
   }
-  TileClaim claim_tile() {
+  ItemClaim claim_item() {
     commands_.push_back({Command::Kind::kClaim});
     if (claims.empty()) return {};
-    const TileClaim claim = claims.front();
+    const ItemClaim claim = claims.front();
     if (claims.size() > 1) claims.erase(claims.begin());
     return claim;
   }

@@ -222,7 +222,7 @@ TEST(Transfers, WorkIsNotedBeforeEveryCall) {
   std::vector<Line> store(128);
   EXPECT_EQ(transfers.get(store[0].bytes, {0}, 8192, 1), Status::kOk);
   EXPECT_EQ(transfers.wait(1), Status::kOk);
-  EXPECT_EQ(transfers.claim_tile().kind, TileClaim::Kind::kNone);
+  EXPECT_EQ(transfers.claim_item().kind, ItemClaim::Kind::kNone);
   EXPECT_EQ(platform.seen, (std::vector<std::uint32_t>{1, 2, 2, 2}));
   EXPECT_EQ(platform.commands().size(), platform.seen.size());
 }

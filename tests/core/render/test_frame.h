@@ -46,7 +46,7 @@ class TestFrame {
   void claim_all() {
     platform->claims.clear();
     for (std::uint32_t tile = 0; tile < record.tiles_x * record.tiles_y; ++tile) {
-      platform->claims.push_back({TileClaim::Kind::kTile, tile});
+      platform->claims.push_back({ItemClaim::Kind::kItem, tile});
     }
     platform->claims.push_back({});
   }

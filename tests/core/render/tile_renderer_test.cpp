@@ -360,12 +360,12 @@ INSTANTIATE_TEST_SUITE_P(Reasons, RefusedFrame, testing::Range<std::size_t>(0, r
 
 TEST_F(TileRendererTest, AbortAndDeadlineComeBetweenTwoTiles) {
   struct Case {
-    TileClaim::Kind kind;
+    ItemClaim::Kind kind;
     Status expected;
   };
   for (const Case& tested :
-       {Case{TileClaim::Kind::kAborted, Status::kAborted}, Case{TileClaim::Kind::kDeadline, Status::kDeadline},
-        Case{TileClaim::Kind::kNone, Status::kOk}}) {
+       {Case{ItemClaim::Kind::kAborted, Status::kAborted}, Case{ItemClaim::Kind::kDeadline, Status::kDeadline},
+        Case{ItemClaim::Kind::kNone, Status::kOk}}) {
     for (std::uint32_t tiles = 0; tiles < 4; ++tiles) {
       TestFrame frame(fine_scene(), settings_of(64, 48, Normal::kTileWidth));
       frame.platform->claims.resize(tiles);
@@ -388,14 +388,14 @@ TEST_F(TileRendererTest, AbortAndDeadlineComeBetweenTwoTiles) {
 TEST_F(TileRendererTest, TilesComeInAnyOrder) {
   TestFrame frame(fine_scene(), settings_of(64, 48, Normal::kTileWidth));
   frame.platform->claims.clear();
-  for (const std::uint32_t tile : {3u, 0u, 2u, 1u}) frame.platform->claims.push_back({TileClaim::Kind::kTile, tile});
+  for (const std::uint32_t tile : {3u, 0u, 2u, 1u}) frame.platform->claims.push_back({ItemClaim::Kind::kItem, tile});
   frame.platform->claims.push_back({});
   expect_reference<Lanes<4>, Normal>(frame);
 }
 
 TEST_F(TileRendererTest, ATileThatTheFrameDoesNotHaveIsAnError) {
   TestFrame frame(scene(), settings_of(64, 48, Normal::kTileWidth));
-  frame.platform->claims = {{TileClaim::Kind::kTile, 4}, {}};
+  frame.platform->claims = {{ItemClaim::Kind::kItem, 4}, {}};
   EXPECT_EQ((frame.render<Lanes<4>, Normal>().status), Status::kBadFrame);
 }
 

@@ -34,9 +34,9 @@ class CopyPort {
 
   Status wait(TagMask) { return Status::kOk; }
 
-  TileClaim claim_tile() {
-    if (next_tile_ == tile_count_) return {TileClaim::Kind::kNone, 0};
-    return {TileClaim::Kind::kTile, next_tile_++};
+  ItemClaim claim_item() {
+    if (next_tile_ == tile_count_) return {ItemClaim::Kind::kNone, 0};
+    return {ItemClaim::Kind::kItem, next_tile_++};
   }
 
  private:

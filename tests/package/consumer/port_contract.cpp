@@ -21,7 +21,7 @@ struct CopyBench {
   static constexpr bool kChecksQueue = false;  // a call ends its transfer: nothing is ever pending
   static constexpr bool kChecksOverlap = false;
 
-  PlatformType port{contract::kTileCount};
+  PlatformType port{contract::kItemCount};
 
   PlatformType& platform() { return port; }
   std::byte* local() { return local_memory; }

@@ -45,7 +45,7 @@ using gridiron::kWorkKindCount;
 using gridiron::Platform;
 using gridiron::Stage;
 using gridiron::Status;
-using gridiron::TileClaim;
+using gridiron::ItemClaim;
 using gridiron::Work;
 using gridiron::WorkId;
 

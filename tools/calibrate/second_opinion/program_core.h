@@ -91,9 +91,9 @@ class MarkedPort : public gridiron::port::CountingPort<InstructionPort> {
  public:
   using CountingPort::CountingPort;
 
-  gridiron::TileClaim claim_tile() {
+  gridiron::ItemClaim claim_item() {
     put_mark<kClaimMark>();
-    return CountingPort::claim_tile();
+    return CountingPort::claim_item();
   }
 };
 
@@ -135,9 +135,9 @@ class CopyingPort {
     return gridiron::Status::kOk;
   }
   [[nodiscard]] gridiron::Status wait(gridiron::TagMask) { return gridiron::Status::kOk; }
-  [[nodiscard]] gridiron::TileClaim claim_tile() {
-    if (next_tile_ == tile_count_) return {gridiron::TileClaim::Kind::kNone, 0};
-    return {gridiron::TileClaim::Kind::kTile, next_tile_++};
+  [[nodiscard]] gridiron::ItemClaim claim_item() {
+    if (next_tile_ == tile_count_) return {gridiron::ItemClaim::Kind::kNone, 0};
+    return {gridiron::ItemClaim::Kind::kItem, next_tile_++};
   }
 
  private:

@@ -30,7 +30,7 @@ class Transfers {
     return Status::kOk;
   }
   void note_stage(Stage) {}
-  [[nodiscard]] TileClaim claim_tile() { return platform_.claim_tile(); }
+  [[nodiscard]] ItemClaim claim_item() { return platform_.claim_item(); }
 
  private:
   P& platform_;
