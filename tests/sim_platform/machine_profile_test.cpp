@@ -18,6 +18,8 @@ TEST(MachineProfile, BuiltInProfilesAreComplete) {
     EXPECT_FALSE(machine.description.empty());
     EXPECT_GT(machine.latency_cycles.mean(), 0);
     EXPECT_GT(machine.channel_bytes_per_cycle, 0);
+    EXPECT_GT(machine.pass_start_cycles, 0);
+    EXPECT_GT(machine.pass_barrier_cycles, 0);
     for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
       const bool has_none = is_charged_as_event(WorkId(kind)) || kind >= kGridEngine.kind_count();
       EXPECT_EQ(machine.work_cycles[kind] == 0, has_none) << machine.name << ", kind " << kind;
@@ -48,6 +50,9 @@ TEST(MachineProfile, FiguresAreThePublishedOnes) {
   EXPECT_EQ(ps3.issue_cycles, 24);
   EXPECT_EQ(ps3.wait_cycles, 14);
   EXPECT_EQ(ps3.claim_cycles, 300);
+  // The count is read, so a start takes a latency at least. The last core's mailbox is half of a claim.
+  EXPECT_EQ(ps3.pass_start_cycles, 500);
+  EXPECT_EQ(ps3.pass_barrier_cycles, 700);
   const MachineProfile& blade = *find_machine_profile("cell-2006");
   EXPECT_EQ(blade.core_count, 8u);
   EXPECT_EQ(blade.clock_hz, 2.4e9);
@@ -55,6 +60,8 @@ TEST(MachineProfile, FiguresAreThePublishedOnes) {
   EXPECT_DOUBLE_EQ(blade.channel_bytes_per_cycle * blade.clock_hz, ps3.channel_bytes_per_cycle * ps3.clock_hz);
   EXPECT_DOUBLE_EQ(blade.latency_cycles.mean() / blade.clock_hz, ps3.latency_cycles.mean() / ps3.clock_hz);
   EXPECT_DOUBLE_EQ(blade.claim_cycles / blade.clock_hz, ps3.claim_cycles / ps3.clock_hz);
+  EXPECT_DOUBLE_EQ(blade.pass_start_cycles / blade.clock_hz, ps3.pass_start_cycles / ps3.clock_hz);
+  EXPECT_DOUBLE_EQ(blade.pass_barrier_cycles / blade.clock_hz, ps3.pass_barrier_cycles / ps3.clock_hz);
   EXPECT_EQ(blade.main_memory_bytes, 512u << 20);
   // The same mean, spread.
   for (const char* name : {"cell-ps3-dram", "cell-ps3-tlb"}) {

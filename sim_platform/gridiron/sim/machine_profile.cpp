@@ -60,6 +60,8 @@ constexpr MachineProfile kCellPs3 = {
     .channel_bytes_per_cycle = 7.2,   // 25.6 GB/s = 8 bytes a cycle, 90 % of it usable: 23 GB/s; 20-23 in practice
     .core_line_interval_cycles = 16,  // 8 bytes a cycle into one local store
     .claim_cycles = 300,              // a mailbox round trip to the general core; estimate
+    .pass_start_cycles = 500,         // the general core reads the count (a latency) and writes mailboxes; estimate
+    .pass_barrier_cycles = 700,       // a mailbox to the general core, which looks at all cores in turn; estimate
     .work_cycles = two_pipe_work_cycles(),
     .tile_work_cycles = two_pipe_tile_work_cycles(),
     .master = in_order_master(),
@@ -102,6 +104,8 @@ constexpr MachineProfile eight_cores_of_2006(MachineProfile machine) {
   machine.latency_cycles = 375;           // 500 cycles at 3.2 GHz = 156 ns
   machine.channel_bytes_per_cycle = 9.6;  // 90 % of 25.6 GB/s
   machine.claim_cycles = 225;
+  machine.pass_start_cycles = 375;  // of bus and memory, as claims are
+  machine.pass_barrier_cycles = 525;
   machine.master.clock_hz = 2.4e9;
   return machine;
 }
@@ -132,6 +136,10 @@ constexpr MachineProfile counted_fu540(MachineProfile machine) {
   machine.channel_bytes_per_cycle = 65536;
   machine.core_line_interval_cycles = 0;
   machine.claim_cycles = kClaimInstructions;
+  // GUESSES, as no firmware runs passes yet: the worker fetches a record and calls a kernel, then tells that it is
+  // done; each like two claims. What the master executes meanwhile is not counted.
+  machine.pass_start_cycles = 2 * kClaimInstructions;
+  machine.pass_barrier_cycles = 2 * kClaimInstructions;
   machine.work_cycles = scalar_instructions();
   machine.tile_work_cycles = {};  // not known
   return machine;

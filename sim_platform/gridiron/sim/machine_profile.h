@@ -88,7 +88,9 @@ struct MachineProfile {
   std::uint32_t latency_seed;        ///< decides which line has which, where there are several
   double channel_bytes_per_cycle;    ///< shared by all cores
   double core_line_interval_cycles;  ///< least distance between two lines of one core
-  double claim_cycles;               ///< from asking for a tile to having it
+  double claim_cycles;               ///< from asking for an item to having it
+  double pass_start_cycles;          ///< from the master's decision to begin a pass until all cores run its kernel
+  double pass_barrier_cycles;        ///< from the last core's end of a pass until the master knows of it
   std::array<double, kWorkKindCount> work_cycles;       ///< per unit of each kind of work of core and the grid, 4 lanes
   std::array<double, kTileWorkCount> tile_work_cycles;  ///< the same of TileWork
   MasterProfile master;                                 ///< builds scenes

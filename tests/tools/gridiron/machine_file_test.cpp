@@ -41,6 +41,8 @@ TEST(MachineFile, EveryDigitReadsBackIdentical) {
   machine.latency_cycles = 0.1 + 0.2;
   machine.channel_bytes_per_cycle = 65536;
   machine.claim_cycles = 1e-300;
+  machine.pass_start_cycles = 2.0 / 3;
+  machine.pass_barrier_cycles = 700.1;
   machine.main_memory_bytes = std::uint64_t{1} << 40;
   machine.work_cycles[0] = 123456.0 / 7;
   machine.master.step_cycles[0] = 1.0 / 3;

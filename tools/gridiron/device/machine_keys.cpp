@@ -49,7 +49,11 @@ constexpr Row kRows[] = {
     {"channel_bytes_per_cycle", &MachineProfile::channel_bytes_per_cycle, {0.0625, 65536}, "shared by all cores"},
     {"core_line_interval_cycles", &MachineProfile::core_line_interval_cycles, kCycles,
      "least distance between two lines of one core"},
-    {"claim_cycles", &MachineProfile::claim_cycles, kCycles, "from asking for a tile to having it"},
+    {"claim_cycles", &MachineProfile::claim_cycles, kCycles, "from asking for an item, such as a tile, to having it"},
+    {"pass_start_cycles", &MachineProfile::pass_start_cycles, kCycles,
+     "from the general core's decision to begin a pass until all cores run it"},
+    {"pass_barrier_cycles", &MachineProfile::pass_barrier_cycles, kCycles,
+     "from the last core's end of a pass until the general core knows"},
 };
 constexpr const char* kWorkKey = "work_cycles.";
 constexpr const char* kMasterClockKey = "master.clock_hz";
