@@ -1,4 +1,4 @@
-// Runs one program on every core of a simulated chip, in checked mode, and puts the cores' results together.
+// Runs one program on every core of a simulated chip and puts the cores' results together.
 // Memory: owns local stores for the time of the frame. Threads: starts its own. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/records.h>
 #include <gridiron/sim/core_runner.h>
@@ -216,6 +216,9 @@ namespace {
       const std::uint64_t tile_bytes = picture_bytes / shape.tile_count;
       for (const Violation& violation : check_complete(runs, tile_bytes, first_tile, end_tile)) fail(violation);
     }
+    if (shape.claims_all && result.status == Status::kOk) {
+      for (const Violation& violation : check_complete(runs, 0, first_tile, end_tile)) fail(violation);
+    }
   }
 
   // Trace and totals.
@@ -245,6 +248,62 @@ ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptio
   } catch (const std::bad_alloc&) {
     return ended_by(HostShortage::kMemory);
   }
+}
+
+ChipResult run_plain_cores(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
+                           const PlainProgram& program) {
+  ChipResult result;
+  const bool one_tile = options.only_tile.has_value();
+  const std::uint32_t first_tile = one_tile ? *options.only_tile : 0;
+  TileSource tiles(first_tile, one_tile ? first_tile + 1 : shape.tile_count, options.abort, options.progress);
+
+  struct FreeArena {
+    void operator()(std::byte* bytes) const { ::operator delete (bytes, std::align_val_t{kLineBytes}); }
+  };
+  struct Run {
+    std::unique_ptr<std::byte, FreeArena> arena;
+    std::unique_ptr<PlainCore> core;
+    Status status = Status::kOk;
+  };
+  std::vector<Run> runs(options.threads);
+  const std::uint64_t slice_bytes = options.spill.slice_bytes();
+  for (std::uint32_t i = 0; i < options.threads; ++i) {
+    Run& run = runs[i];
+    run.arena.reset(static_cast<std::byte*>(::operator new (shape.data_bytes, std::align_val_t{kLineBytes})));
+    std::memset(run.arena.get(), 0, shape.data_bytes);
+    const SpillRegion spill =
+        slice_bytes == 0 ? SpillRegion{} : SpillRegion{options.spill.address.offset_by(i * slice_bytes), slice_bytes};
+    run.core = std::make_unique<PlainCore>(memory.base(), options.limits, tiles, spill);
+  }
+  const auto run_one = [&](std::uint32_t i) {
+    Run& run = runs[i];
+    run.status = program(*run.core, std::span(run.arena.get(), shape.data_bytes));
+    if (run.status != Status::kOk) tiles.stop();
+  };
+  const WorkersEnd end = run_workers(options.threads, 1, run_one, [&] { tiles.stop(); });
+  if (end.error != nullptr) std::rethrow_exception(end.error);
+
+  for (std::uint32_t i = 0; i < options.threads; ++i) {
+    const Run& run = runs[i];
+    result.transfers += run.core->transfers();
+    if (run.status == Status::kOk) continue;
+    // A failure outranks the abort that it causes on other cores; of two failures the lower tile is reported.
+    const bool is_first = result.status == Status::kOk;
+    const bool was_abort = result.status == Status::kAborted, is_abort = run.status == Status::kAborted;
+    if (is_first || (was_abort && !is_abort) || (was_abort == is_abort && run.core->tile_id() < result.failed_tile)) {
+      result.status = run.status;
+      result.failed_core = i;
+      result.failed_tile = run.core->tile_id();
+    }
+  }
+  if (shape.claims_all && result.status == Status::kOk) {
+    const ItemClaim left = tiles.claim();
+    if (left.kind == ItemClaim::Kind::kItem) {
+      result.status = Status::kIncompleteFrame;
+      result.failed_tile = left.item;
+    }
+  }
+  return result;
 }
 
 }  // namespace gridiron::sim

@@ -5,6 +5,7 @@
 
 #include <gridiron/platform/contract.h>
 #include <gridiron/sim/tile_source.h>
+#include <gridiron/store/local_store.h>
 
 #include <cassert>
 #include <cstddef>
@@ -19,11 +20,14 @@ void copy_bytes(void* to, const void* from, std::size_t bytes);
 /// Asserts catch the cheapest mistakes in builds without NDEBUG.
 class PlainCore {
  public:
-  /// @param base  host address of main address 0.
-  PlainCore(std::byte* base, const PlatformLimits& limits, TileSource& tiles)
-      : base_(base), limits_(limits), tiles_(&tiles) {}
+  /// @param base   host address of main address 0.
+  /// @param spill  the core's own.
+  PlainCore(std::byte* base, const PlatformLimits& limits, TileSource& tiles, SpillRegion spill = {})
+      : base_(base), limits_(limits), tiles_(&tiles), spill_(spill) {}
 
   [[nodiscard]] PlatformLimits limits() const { return limits_; }
+  /// The core's own slice of the frame's spill memory, if there is any.
+  [[nodiscard]] SpillRegion spill() const { return spill_; }
 
   Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
     assert(bytes != 0 && bytes <= limits_.max_transfer_bytes && tag.index < limits_.tag_count);
@@ -65,6 +69,7 @@ class PlainCore {
   std::byte* base_;
   PlatformLimits limits_;
   TileSource* tiles_;
+  SpillRegion spill_;
   std::uint64_t transfers_ = 0;
   std::uint32_t tile_id_ = 0;
   bool busy_ = false;

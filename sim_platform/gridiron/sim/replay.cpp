@@ -161,6 +161,7 @@ struct Core {
   // Sums.
   CoreTiming timing;
   Ticks init = 0, compute = 0, idle = 0;
+  Ticks tile_begin = 0, longest_tile = 0;
   std::array<Ticks, kWaitLevelCount> waits{};
   Stage stage = Stage::kPrimary;
   std::array<Ticks, kStageCount> stage_compute{}, stage_waits{};
@@ -242,6 +243,7 @@ class Replay {
       core.phase = Phase::kTile;
       begin_steps(core, *tile);
       core.tile_id = tile->tile_id;
+      core.tile_begin = core.now;
       ++core.timing.tiles;
       if (with_timeline_) {
         core.tile_span = core.timeline.size();
@@ -328,8 +330,9 @@ class Replay {
     if (core.phase == Phase::kEpilogue) {
       core.phase = Phase::kEnded;
     } else {
-      if (core.phase == Phase::kTile && with_timeline_) {
-        core.timeline[core.tile_span].end_cycles = cycles_from_ticks(core.now);
+      if (core.phase == Phase::kTile) {
+        core.longest_tile = std::max(core.longest_tile, core.now - core.tile_begin);
+        if (with_timeline_) core.timeline[core.tile_span].end_cycles = cycles_from_ticks(core.now);
       }
       core.claim_time = core.now;
     }
@@ -489,6 +492,8 @@ class Replay {
       timing.init_cycles = cycles_from_ticks(core.init);
       timing.compute_cycles = cycles_from_ticks(core.compute);
       timing.idle_cycles = cycles_from_ticks(core.idle + (end - core.now));
+      timing.end_idle_cycles = cycles_from_ticks(end - core.now);
+      timing.longest_tile_cycles = cycles_from_ticks(core.longest_tile);
       for (std::size_t level = 0; level < kWaitLevelCount; ++level) {
         timing.dma_wait_cycles[level] = cycles_from_ticks(core.waits[level]);
       }
@@ -518,6 +523,10 @@ class Replay {
 
 FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options) {
   return Replay(trace, machine, options).run();
+}
+
+double rounded_cycles(double cycles) {
+  return cycles_from_ticks(ticks_from_cycles(cycles));
 }
 
 struct CoreClock::State {

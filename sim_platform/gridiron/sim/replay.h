@@ -35,6 +35,8 @@ struct CoreTiming {
   double compute_cycles = 0;                     ///< all other work, and issuing transfers
   double dma_wait_cycles[kWaitLevelCount] = {};  ///< by WaitLevel
   double idle_cycles = 0;  ///< claim latency (of the refused claim too) and the time after the core's last step
+  double end_idle_cycles = 0;      ///< of these, the time after the core's last step
+  double longest_tile_cycles = 0;  ///< of its tiles: from having the tile to the tile's last step
   std::uint64_t gets = 0, puts = 0;                     ///< commands
   std::uint64_t bytes_in = 0, bytes_out = 0;            ///< as requested
   std::uint64_t line_bytes_in = 0, line_bytes_out = 0;  ///< in whole lines
@@ -101,6 +103,9 @@ struct ReplayOptions {
 /// steps packed by TraceWriter, which are read as cores come to them. Cost: linear in events and lines, times
 /// core_count; memory: the steps of one tile a core, unpacked, about 2 bytes a step.
 [[nodiscard]] FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options);
+
+/// @returns a time of a profile as the replay takes it: in whole 1/1024 of a cycle, within its limits.
+[[nodiscard]] double rounded_cycles(double cycles);
 
 /// A replay of one core that is alone with its memory, step by step while the core runs.
 class CoreClock {

@@ -6,7 +6,6 @@
 #include <gridiron/base/records.h>
 #include <gridiron/sim/compiled_layouts.h>
 #include <gridiron/sim/core_runner.h>
-#include <gridiron/sim/host_workers.h>
 #include <gridiron/sim/plain_core.h>
 #include <gridiron/sim/render_entry.h>
 #include <gridiron/sim/sim_chip.h>
@@ -193,54 +192,6 @@ struct RecordReader {
   ImageHeader image;
   return is_tree_in_memory(memory, frame, image) ? Status::kOk : Status::kBadFrame;
 }
-[[nodiscard]] ChipResult render_plain(SimMemory& memory, MainAddress frame, const FrameShape& shape,
-                                      const LayoutChoice& layout, const ChipOptions& options,
-                                      RenderEntry<PlainCore> entry) {
-  ChipResult result;
-  const bool one_tile = options.only_tile.has_value();
-  const std::uint32_t first_tile = one_tile ? *options.only_tile : 0;
-  TileSource tiles(first_tile, one_tile ? first_tile + 1 : shape.tile_count, options.abort, options.progress);
-
-  struct FreeArena {
-    void operator()(std::byte* bytes) const { ::operator delete (bytes, std::align_val_t{kLineBytes}); }
-  };
-  struct Run {
-    std::unique_ptr<std::byte, FreeArena> arena;
-    std::unique_ptr<PlainCore> core;
-    Status status = Status::kOk;
-  };
-  std::vector<Run> runs(options.threads);
-  for (Run& run : runs) {
-    run.arena.reset(static_cast<std::byte*>(::operator new (shape.data_bytes, std::align_val_t{kLineBytes})));
-    std::memset(run.arena.get(), 0, shape.data_bytes);
-    run.core = std::make_unique<PlainCore>(memory.base(), options.limits, tiles);
-  }
-  const std::uint64_t slice_bytes = options.spill.slice_bytes();
-  const auto render = [&](std::uint32_t i) {
-    Run& run = runs[i];
-    const SpillRegion spill =
-        slice_bytes == 0 ? SpillRegion{} : SpillRegion{options.spill.address.offset_by(i * slice_bytes), slice_bytes};
-    run.status = entry(layout, run.arena.get(), *run.core, frame, spill);
-    if (run.status != Status::kOk) tiles.stop();
-  };
-  const WorkersEnd end = run_workers(options.threads, 1, render, [&] { tiles.stop(); });
-  if (end.error != nullptr) std::rethrow_exception(end.error);
-
-  for (std::uint32_t i = 0; i < options.threads; ++i) {
-    const Run& run = runs[i];
-    result.transfers += run.core->transfers();
-    if (run.status == Status::kOk) continue;
-    // A failure outranks the abort that it causes on other cores; of two failures the lower tile is reported.
-    const bool is_first = result.status == Status::kOk;
-    const bool was_abort = result.status == Status::kAborted, is_abort = run.status == Status::kAborted;
-    if (is_first || (was_abort && !is_abort) || (was_abort == is_abort && run.core->tile_id() < result.failed_tile)) {
-      result.status = run.status;
-      result.failed_core = i;
-      result.failed_tile = run.core->tile_id();
-    }
-  }
-  return result;
-}
 
 /// As render_frame. Errors: throws shortages of the host, and whatever options.progress throws.
 [[nodiscard]] ChipResult render_on_host(SimMemory& memory, MainAddress frame, const ChipOptions& asked) {
@@ -273,8 +224,10 @@ struct RecordReader {
 
   if (options.mode == Mode::kPlain) {
     const RenderEntry<PlainCore> entry = plain_entry(options, group);
-    return entry == nullptr ? refuse(Status::kUnsupportedFrame)
-                            : render_plain(memory, frame, shape, layout, options, entry);
+    if (entry == nullptr) return refuse(Status::kUnsupportedFrame);
+    return run_plain_cores(memory, shape, options, [&](PlainCore& core, std::span<std::byte> data) {
+      return entry(layout, data.data(), core, frame, core.spill());
+    });
   }
   const RenderEntry<SimCore> entry = checked_entry(options, group);
   if (entry == nullptr) return refuse(Status::kUnsupportedFrame);
