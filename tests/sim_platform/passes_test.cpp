@@ -358,6 +358,21 @@ TEST(Passes, TheCallersAbortEndsTheListInAnItemOrBetweenPasses) {
   }
 }
 
+TEST(Passes, AnAbortBetweenPassesIsSeenByTheMaster) {
+  for (const Mode mode : kModes) {
+    NumberPasses bench(3);
+    std::vector<Pass> passes = bench.passes();
+    passes[0].items = {0};  // no core that could claim
+    const std::atomic<bool> abort{true};
+    ChipOptions options;
+    options.mode = mode;
+    options.abort = &abort;
+    const PassesResult result = run_passes(bench.memory(), passes, options);
+    EXPECT_EQ(result.status, Status::kAborted);
+    EXPECT_EQ(result.passes.size(), 1u);
+  }
+}
+
 TEST(Passes, AShortageOfTheHostIsTold) {
   for (const Mode mode : kModes) {
     NumberPasses bench(3);
