@@ -2,102 +2,22 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/build/tree/tree_curve.h>
+#include <gridiron/build/tree/tree_order.h>
+#include <gridiron/build/tree/tree_splits.h>
 
-#include <bit>
 #include <cstddef>
 
 namespace gridiron {
 namespace {
 
-constexpr std::uint32_t kCodeBits = 30;          // ten of an axis
-constexpr std::uint32_t kCodedAgain = 1u << 31;  // of a code that is not one of the whole mesh
-
-// Equal codes of more triangles are coded again, on a lattice of their own; fewer are split by their number.
-constexpr std::uint32_t kFewTriangles = 32;
-
-// A leaf stands for more of what it holds than a node, whose triangles a ray may still miss.
-constexpr float kLeafDensity = 1.5f;
-
-// One word, so that it is moved as one.
-struct Key {
-  std::uint64_t bits;
-
-  [[nodiscard]] static Key of(std::uint32_t code, std::uint32_t id) { return {std::uint64_t{id} << 32 | code}; }
-  // Keys of triangles first to first + 3.
-  static GRIDIRON_INLINE void store_four(Lanes<4>::Int codes, std::uint32_t first, Key* keys) {
-    using L = Lanes<4>;
-    const L::Int ids = L::Int::splat(first) + L::Int{{0, 1, 2, 3}};
-    const L::Float low = L::shuffle_quads<0, 4, 1, 5>(L::floats_of(codes), L::floats_of(ids));
-    const L::Float high = L::shuffle_quads<2, 6, 3, 7>(L::floats_of(codes), L::floats_of(ids));
-    __builtin_memcpy(keys, &low, sizeof low);
-    __builtin_memcpy(keys + 2, &high, sizeof high);
-  }
-  // Along the Z curve.
-  [[nodiscard]] std::uint32_t code() const { return static_cast<std::uint32_t>(bits); }
-  // Of a triangle.
-  [[nodiscard]] std::uint32_t id() const { return static_cast<std::uint32_t>(bits >> 32); }
-};
-
-// Twice the area; where floats overflow or underflow any number, as it decides an order alone.
-float area_of(const CornerQuads& corners) {
-  const CornerQuad e = corners.b - corners.a, f = corners.c - corners.a;
-  const CornerQuad normal = e * turned(f) - turned(e) * f;  // z, x, y
-  const CornerQuad squares = normal * normal;
-  return __builtin_sqrtf(squares.v[1] + squares.v[2] + squares.v[0]);
-}
-
-// The lattice of a Z curve: 1,024 places along each axis of a range of middles.
-class Curve {
- public:
-  explicit Curve(const QuadBox& middles) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const float low = middles.low.v[axis], extent = middles.high.v[axis] - low;
-      low_[axis] = CornerQuad(low);
-      // The last middle falls into the last place; a smaller extent would have a scale that is no number.
-      const bool has_extent = extent > 0x1p-100f;
-      scale_[axis] = CornerQuad(has_extent ? 1023.9375f / extent : 0.0f);
-      is_flat_ = is_flat_ && !has_extent;
-    }
-  }
-  // All triangles are at one place.
-  [[nodiscard]] bool is_flat() const { return is_flat_; }
-
-  // The codes of boxes, by their middles.
-  [[nodiscard]] GRIDIRON_INLINE Lanes<4>::Int codes_of(const FourBoxes& boxes) const {
-    const auto part_of = [this](int axis, CornerQuad low, CornerQuad high) GRIDIRON_INLINE_LAMBDA {
-      return spread(Lanes<4>::truncate(((low + high) - low_[axis]) * scale_[axis]));
-    };
-    return part_of(0, boxes.low.x, boxes.high.x) | part_of(1, boxes.low.y, boxes.high.y) << 1 |
-           part_of(2, boxes.low.z, boxes.high.z) << 2;
-  }
-
- private:
-  // Two zeros behind each of ten bits.
-  [[nodiscard]] static GRIDIRON_INLINE Lanes<4>::Int spread(Lanes<4>::Int bits) {
-    using Int = Lanes<4>::Int;
-    bits = (bits | bits << 16) & Int::splat(0x030000FFu);
-    bits = (bits | bits << 8) & Int::splat(0x0300F00Fu);
-    bits = (bits | bits << 4) & Int::splat(0x030C30C3u);
-    return (bits | bits << 2) & Int::splat(0x09249249u);
-  }
-
-  CornerQuad low_[3], scale_[3];
-  bool is_flat_ = true;
-};
-
-// The number of the highest bit, from 1; 0 of none: from the exponent of a double that holds it exactly.
-// std::bit_width() calls a library where there is no instruction for it.
-[[nodiscard]] std::int32_t width_of(std::uint32_t bits) {
-  return static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(static_cast<double>(bits) + 0.5) >> 52) - 1022;
-}
-
 // Sorts keys by their codes, equal ones in the order they have, digit by digit: to `to` if there is an odd number of
 // digits, else back to `from`. Both are changed.
 template <std::uint32_t kDigitBits>
-void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* counts) {
-  constexpr std::uint32_t kDigits = kCodeBits / kDigitBits, kValues = 1u << kDigitBits;
-  static_assert(kDigits * kDigitBits == kCodeBits);
-  const auto digit_of = [](Key key, std::uint32_t digit)
+void sort_keys(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t* counts) {
+  constexpr std::uint32_t kDigits = kTreeCodeBits / kDigitBits, kValues = 1u << kDigitBits;
+  static_assert(kDigits * kDigitBits == kTreeCodeBits);
+  const auto digit_of = [](TreeKey key, std::uint32_t digit)
                             GRIDIRON_INLINE_LAMBDA { return (key.code() >> kDigitBits * digit) % kValues; };
   for (std::uint32_t i = 0; i < kDigits * kValues; ++i) counts[i] = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -116,12 +36,12 @@ void sort_keys(Key* from, Key* to, std::uint32_t count, std::uint32_t* counts) {
     constexpr std::uint32_t kGroup = 8;
     std::uint32_t i = 0;
     for (; count - i >= kGroup; i += kGroup) {
-      Key keys[kGroup];
+      TreeKey keys[kGroup];
       for (std::uint32_t k = 0; k < kGroup; ++k) keys[k] = from[i + k];
-      for (const Key key : keys) to[places[digit_of(key, digit)]++] = key;
+      for (const TreeKey key : keys) to[places[digit_of(key, digit)]++] = key;
     }
     for (; i < count; ++i) to[places[digit_of(from[i], digit)]++] = from[i];
-    Key* const sorted = to;
+    TreeKey* const sorted = to;
     to = from;
     from = sorted;
   }
@@ -198,18 +118,18 @@ bool bound_vertices(const LatticeVertices& vertices, QuadBox& box) {
 }
 
 template <class Mesh, class Form>
-class TreeBuilder {
+class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
  public:
   using Record = typename Form::Record;
 
   TreeBuilder(const Mesh& mesh, std::uint32_t leaf_triangles, std::span<Record> records, std::span<TreeNode> nodes,
               std::span<std::byte> scratch, TreeSize& size, TreeOrder order)
-      : mesh_(mesh),
+      : Splits(leaf_triangles),
+        mesh_(mesh),
         form_(mesh),
-        leaf_triangles_(leaf_triangles),
         records_(records),
         nodes_(nodes),
-        keys_(reinterpret_cast<Key*>(scratch.data())),
+        keys_(reinterpret_cast<TreeKey*>(scratch.data())),
         spare_(keys_ + mesh.triangles.size()),
         counts_(reinterpret_cast<std::uint32_t*>(spare_ + mesh.triangles.size())),
         size_(size),
@@ -228,26 +148,15 @@ class TreeBuilder {
   }
 
  private:
-  struct Range {
-    std::uint32_t begin, end;
-    std::int32_t level;    // the highest bit in which codes differ, from 1; 0: they are equal; -1: a leaf
-    std::uint32_t group;   // of a node's first four parts: from which it comes
-    std::uint64_t weight;  // of parts that can be split, in the order in which they are; 0: a leaf
-  };
-
-  // By trial with two scans, a room and balls on a floor. More than any part weighs: kMostWeight.
-  static constexpr std::int32_t kLevelWeight = 5, kNumberWeight = 2, kRootWeight = 3, kMostWeight = 1000;
-  // Of a part's weight, above its size and its number: the first of the largest of those that weigh the most.
-  static constexpr std::uint32_t kNumberBits = 4, kWeightShift = kNumberBits + 28;
-  static constexpr std::uint64_t kByNumber = 0xFEDCBA9876543210u;  // TreeNode::order
-  static constexpr std::uint32_t kGroups = 4, kGroupSize = kTreeWidth / kGroups;
+  using Splits = TreeSplits<TreeBuilder>;
+  friend Splits;
 
   // --- Triangles --------------------------------------------------------------------------------------------------
 
   // Sorts the triangles that have an area by their codes, and bounds them.
   [[nodiscard]] Status take_triangles(const QuadBox& vertices) {
     // The least and the greatest middle that a triangle can have.
-    const Curve curve({vertices.low + vertices.low, vertices.high + vertices.high});
+    const TreeCurve curve({vertices.low + vertices.low, vertices.high + vertices.high});
     FourBoxes bounds = FourBoxes::none();
     std::uint32_t count = 0;
     const auto take = [&](std::uint32_t first, const FourTriangles& triangles, std::uint32_t kept)
@@ -255,13 +164,13 @@ class TreeBuilder {
                             FourBoxes boxes = triangles.boxes();
                             const Lanes<4>::Int codes = curve.codes_of(boxes);
                             if (kept == 15u) {
-                              Key::store_four(codes, first, spare_ + count);
+                              TreeKey::store_four(codes, first, spare_ + count);
                               count += 4;
                             } else {
                               for (int lane = 0; lane < 4; ++lane) {
                                 if ((kept >> lane & 1u) == 0) continue;
                                 const auto code = static_cast<std::uint32_t>(codes[lane]);
-                                spare_[count++] = Key::of(code, first + static_cast<std::uint32_t>(lane));
+                                spare_[count++] = TreeKey::of(code, first + static_cast<std::uint32_t>(lane));
                               }
                               boxes.keep(kept);
                             }
@@ -281,7 +190,7 @@ class TreeBuilder {
     } else {
       sort_keys<kManyKeysDigit>(spare_, keys_, count, counts_);
       ends_ = counts_ + (1u << kManyKeysDigit);
-      Key* const sorted = spare_;
+      TreeKey* const sorted = spare_;
       spare_ = keys_;
       keys_ = sorted;
     }
@@ -289,15 +198,6 @@ class TreeBuilder {
   }
 
   // --- Nodes ------------------------------------------------------------------------------------------------------
-
-  [[nodiscard]] Range range_of(std::uint32_t begin, std::uint32_t end) const {
-    const std::uint32_t size = end - begin;
-    if (size <= leaf_triangles_) return {begin, end, -1, 0, 0};
-    const std::int32_t level = width_of(keys_[begin].code() ^ keys_[end - 1].code());
-    // Rays meet large cells, and a box is worth more above many triangles.
-    const std::int32_t weight = 2 * kMostWeight + kLevelWeight * level + kNumberWeight * width_of(size);
-    return {begin, end, level, 0, static_cast<std::uint64_t>(weight) << kWeightShift | size << kNumberBits};
-  }
 
   // Level by level: nodes that are still to be split lie behind those that are done.
   [[nodiscard]] Status split_all(std::uint32_t count) {
@@ -315,7 +215,7 @@ class TreeBuilder {
   }
 
   // Until a node is split it holds its range and its depth.
-  [[nodiscard]] Status append_node(const Range& range, std::uint32_t depth) {
+  [[nodiscard]] Status append_node(const TreeRange& range, std::uint32_t depth) {
     if (size_.node_count == nodes_.size()) return Status::kMemoryTooSmall;
     TreeNode& node = nodes_[size_.node_count++];
     node.children[0].bits = range.begin;
@@ -327,19 +227,14 @@ class TreeBuilder {
 
   [[nodiscard]] Status split(TreeNode& node) {
     const std::uint32_t begin = node.children[0].bits, end = node.children[1].bits, depth = node.children[2].bits;
-    Range ranges[kTreeWidth];
+    TreeRange ranges[kTreeWidth];
     std::uint32_t count = 0;
-    if (is_deep(end - begin, depth)) {
-      count = split_by_number(begin, end, ranges);
-    } else {
-      count = split_to_leaves(begin, end, ranges);
-      if (count == 0) count = split_by_codes(begin, end, ranges);
-    }
+    GRIDIRON_TRY(this->split_range(begin, end, depth, ranges, count));
     // Boxes are written at last.
     __builtin_memset(node.children, 0, sizeof(TreeNode) - offsetof(TreeNode, children));
     node.child_count = count;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const Range& range = ranges[i];
+      const TreeRange& range = ranges[i];
       if (range.level < 0) {
         node.children[i] = TreeChild::leaf(range.begin, range.end - range.begin);
         continue;
@@ -350,124 +245,26 @@ class TreeBuilder {
     return Status::kOk;
   }
 
-  // Whether so many triangles might not fit below a node: of d levels of nodes below it, each 16 times as many as of
-  // d - 1. Splitting them by their number makes a sixteenth of them fit a level less.
-  [[nodiscard]] bool is_deep(std::uint32_t count, std::uint32_t depth) const {
-    std::uint64_t fitting = leaf_triangles_;
-    for (std::uint32_t level = depth; level < kMaxTreeDepth && fitting < count; ++level) fitting *= kTreeWidth;
-    return count > fitting;
-  }
-
-  // Into as many parts as leaves are needed, at most 16.
-  [[nodiscard]] std::uint32_t split_by_number(std::uint32_t begin, std::uint32_t end, Range* ranges) const {
-    const std::uint64_t count = end - begin;
-    const std::uint64_t leaves = (count + leaf_triangles_ - 1) / leaf_triangles_;
-    const std::uint64_t parts = leaves < kTreeWidth ? leaves : kTreeWidth;
-    for (std::uint64_t i = 0; i < parts; ++i) {
-      ranges[i] = range_of(begin + static_cast<std::uint32_t>(count * i / parts),
-                           begin + static_cast<std::uint32_t>(count * (i + 1) / parts));
-    }
-    return static_cast<std::uint32_t>(parts);
-  }
-
-  // Where all parts become leaves before there are too many, it does not matter which one is split first. Such nodes
-  // are most of all. @returns 0 where they do not, and where codes are equal.
-  [[nodiscard]] std::uint32_t split_to_leaves(std::uint32_t begin, std::uint32_t end, Range* ranges) const {
-    if (end - begin > kTreeWidth * leaf_triangles_) return 0;
-    std::uint32_t ends[kTreeWidth];  // of the parts from `begin` on, the last first
-    std::uint32_t count = 0, open = 1;
-    ends[0] = end;
-    while (open > 0) {
-      const std::uint32_t part_end = ends[open - 1];
-      if (part_end - begin <= leaf_triangles_) {
-        ranges[count++] = {begin, part_end, -1, 0, 0};
-        begin = part_end;
-        --open;
-        continue;
-      }
-      const std::uint32_t first = keys_[begin].code(), last = keys_[part_end - 1].code();
-      if (first == last || count + open == kTreeWidth) return 0;
-      ends[open++] = first_like_last(begin, part_end, first, last);
-    }
-    return count;
-  }
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t code_of(std::uint32_t i) const { return keys_[i].code(); }
+  [[nodiscard]] std::uint32_t whole_count() const { return size_.triangle_count; }
 
   // Where a part is split.
-  [[nodiscard]] std::uint32_t middle_of(const Range& part) const {
-    const std::uint32_t first = keys_[part.begin].code(), last = keys_[part.end - 1].code();
-    if (ends_ == nullptr || part.level <= static_cast<std::int32_t>(kManyKeysDigit) || (first & kCodedAgain) != 0) {
-      return first_like_last(part.begin, part.end, first, last);
+  [[nodiscard]] std::uint32_t middle_of(const TreeRange& part) const {
+    const std::uint32_t first = code_of(part.begin), last = code_of(part.end - 1);
+    if (ends_ == nullptr || part.level <= static_cast<std::int32_t>(kManyKeysDigit) || (first & kTreeCodedAgain) != 0) {
+      return this->first_like_last(part.begin, part.end, first, last);
     }
     // Sorting by the high digit has left the end of the keys of each of its values.
     const std::uint32_t bit = 1u << (part.level - 1);
     return ends_[((last & ~(bit - 1)) >> kManyKeysDigit) - 1];
   }
 
-  // The first key that has the highest bit in which the first and the last one differ as the last one has it.
-  [[nodiscard]] std::uint32_t first_like_last(std::uint32_t begin, std::uint32_t end, std::uint32_t first,
-                                              std::uint32_t last) const {
-    // The first is among [low, low + count]. No branch depends on a code: none could be predicted.
-    std::uint32_t low = begin + 1;
-    for (std::uint32_t count = end - begin - 2; count > 0;) {
-      const std::uint32_t half = (count + 1) / 2;
-      const std::uint32_t code = keys_[low + half - 1].code();
-      low += (code ^ first) > (code ^ last) ? 0 : half;
-      count -= half;
-    }
-    return low;
-  }
-
-  // Splits the part that weighs the most until there are 16 or all are leaves. A core tests rays against the union box
-  // of each four children first, so the first four parts become groups of four: below the root a group gets more only
-  // if no other can be split. At the root, which all rays enter, a group may grow where its parts weigh much more.
-  [[nodiscard]] std::uint32_t split_by_codes(std::uint32_t begin, std::uint32_t end, Range* ranges) {
-    const bool is_root = end - begin == size_.triangle_count;
-    const std::uint64_t full_weight = static_cast<std::uint64_t>(is_root ? kRootWeight : kMostWeight) << kWeightShift;
-    std::uint32_t group_sizes[kGroups] = {1, 1, 1, 1};
-    std::uint64_t less[kGroups] = {};  // what the parts of a group that is full weigh less
-    ranges[0] = range_of(begin, end);
-    std::uint32_t count = 1;
-    while (count < kTreeWidth) {
-      std::uint64_t most = 0;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const Range& range = ranges[i];
-        const std::uint64_t weight = range.weight == 0 ? 0 : (range.weight - less[range.group]) | (kTreeWidth - 1 - i);
-        most = weight > most ? weight : most;
-      }
-      if (most == 0) break;
-      const std::uint32_t best = kTreeWidth - 1 - static_cast<std::uint32_t>(most % kTreeWidth);
-      split_part(ranges, count, best);
-      ++count;
-      const std::uint32_t group = ranges[best].group;
-      if (count > kGroups && ++group_sizes[group] >= kGroupSize) less[group] = full_weight;
-      if (count == kGroups) {
-        for (std::uint32_t i = 0; i < kGroups; ++i) ranges[i].group = i;
-      }
-    }
-    return count;
-  }
-
-  // Splits part i of `count` in two.
-  void split_part(Range* ranges, std::uint32_t count, std::uint32_t i) {
-    Range& part = ranges[i];
-    const std::uint32_t group = part.group;
-    if (part.level == 0) {
-      code_again(part.begin, part.end);
-      part = range_of(part.begin, part.end);
-    }
-    const std::uint32_t middle = middle_of(part);
-    for (std::uint32_t k = count; k > i + 1; --k) ranges[k] = ranges[k - 1];
-    ranges[i + 1] = range_of(middle, part.end);
-    part = range_of(part.begin, middle);
-    part.group = ranges[i + 1].group = group;
-  }
-
-  static void number(Key* keys, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; ++i) keys[i] = Key::of(i | kCodedAgain, keys[i].id());
+  static void number(TreeKey* keys, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) keys[i] = numbered(i, keys[i].id());
   }
 
   // The boxes of the triangles of the next four keys; if fewer are left, of the last one again.
-  [[nodiscard]] FourBoxes boxes_of(const Key* keys, std::uint32_t left) const {
+  [[nodiscard]] FourBoxes boxes_of(const TreeKey* keys, std::uint32_t left) const {
     CornerQuads corners[4];
     for (std::uint32_t k = 0; k < 4; ++k) {
       corners[k] = CornerQuads::of(mesh_, mesh_.triangles[keys[k < left ? k : left - 1].id()]);
@@ -477,12 +274,12 @@ class TreeBuilder {
 
   // Gives triangles of one code new ones that differ, and sorts them: on a lattice around them, or by their number if
   // they are few or all in one place.
-  void code_again(std::uint32_t begin, std::uint32_t end) {
+  [[nodiscard]] Status code_again(std::uint32_t begin, std::uint32_t end) {
     const std::uint32_t count = end - begin;
-    Key* const keys = keys_ + begin;
-    if (count <= kFewTriangles) {
+    TreeKey* const keys = keys_ + begin;
+    if (count <= kFewTreeTriangles) {
       number(keys, count);
-      return;
+      return Status::kOk;
     }
     FourBoxes middles = FourBoxes::none();
     for (std::uint32_t i = 0; i < count; i += 4) {
@@ -490,18 +287,18 @@ class TreeBuilder {
       const QuadRows middle = {boxes.low.x + boxes.high.x, boxes.low.y + boxes.high.y, boxes.low.z + boxes.high.z};
       middles.add({middle, middle});
     }
-    const Curve curve(QuadBox::around(middles));
+    const TreeCurve curve(QuadBox::around(middles));
     if (curve.is_flat()) {
       number(keys, count);
-      return;
+      return Status::kOk;
     }
     const bool are_few = count <= kFewSortedKeys;
-    Key* const unsorted = are_few ? keys : spare_ + begin;
+    TreeKey* const unsorted = are_few ? keys : spare_ + begin;
     for (std::uint32_t i = 0; i < count; i += 4) {
       const Lanes<4>::Int codes = curve.codes_of(boxes_of(keys + i, count - i));
       for (std::uint32_t k = 0; k < 4 && i + k < count; ++k) {
-        const std::uint32_t code = static_cast<std::uint32_t>(codes[static_cast<int>(k)]) | kCodedAgain;
-        unsorted[i + k] = Key::of(code, keys[i + k].id());
+        const std::uint32_t code = static_cast<std::uint32_t>(codes[static_cast<int>(k)]) | kTreeCodedAgain;
+        unsorted[i + k] = TreeKey::of(code, keys[i + k].id());
       }
     }
     if (are_few) {
@@ -509,6 +306,7 @@ class TreeBuilder {
     } else {
       sort_keys<kKeysDigit>(unsorted, keys, count, counts_);
     }
+    return Status::kOk;
   }
 
   // --- Records and boxes ------------------------------------------------------------------------------------------
@@ -570,19 +368,11 @@ class TreeBuilder {
       }
       if constexpr (kHasOrder) {
         total += area;
-        densities[i] = area * (child.is_leaf() ? kLeafDensity : 1.0f) / boxes[i].half_surface();
+        densities[i] = density_of(area, child.is_leaf(), boxes[i]);
       }
     }
-    for (std::uint32_t i = 0; i < kTreeWidth; i += 4) {
-      CornerQuad lows[4], highs[4];
-      for (std::uint32_t k = 0; k < 4; ++k) {
-        lows[k] = boxes[i + k].low;
-        highs[k] = boxes[i + k].high;
-      }
-      QuadRows::of(lows).store(node.low, i);
-      QuadRows::of(highs).store(node.high, i);
-    }
-    node.order = kByNumber;
+    store_child_boxes(boxes, node);
+    node.order = kTreeOrderByNumber;
     if constexpr (kHasOrder) {
       areas[number] = total;
       node.order = order_of(densities, node.child_count);
@@ -601,30 +391,12 @@ class TreeBuilder {
     return box.grown(margin_);
   }
 
-  // The densest first; of equal ones the first.
-  [[nodiscard]] static std::uint64_t order_of(const float* densities, std::uint32_t count) {
-    std::uint32_t children[kTreeWidth];
-    for (std::uint32_t i = 0; i < kTreeWidth; ++i) {
-      std::uint32_t place = i;
-      if (i < count) {
-        for (; place > 0 && densities[children[place - 1]] < densities[i]; --place) {
-          children[place] = children[place - 1];
-        }
-      }
-      children[place] = i;
-    }
-    std::uint64_t order = 0;
-    for (std::uint32_t i = 0; i < kTreeWidth; ++i) order |= std::uint64_t{children[i]} << 4 * i;
-    return order;
-  }
-
   const Mesh& mesh_;
   Form form_;
-  std::uint32_t leaf_triangles_;
   std::span<Record> records_;
   std::span<TreeNode> nodes_;
-  Key* keys_;
-  Key* spare_;
+  TreeKey* keys_;
+  TreeKey* spare_;
   std::uint32_t* counts_;
   const std::uint32_t* ends_ = nullptr;  // of the keys of each value of the high digit; null: not known
   TreeSize& size_;
