@@ -1,0 +1,265 @@
+// Building the wide tree on the cores: what the passes share. Sizes of a local store, where things lie in main memory,
+// and the records that one pass writes and another reads. BUILD.md describes the passes.
+// Source: own. Memory: caller's. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/math.h>
+#include <gridiron/base/records.h>
+#include <gridiron/base/tree_records.h>
+#include <gridiron/build/corner_quad.h>
+#include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/build/tree/tree_curve.h>
+#include <gridiron/platform/contract.h>
+#include <gridiron/platform/status.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gridiron {
+
+/// Sizes of a core of 256 KB. None changes a byte of the tree.
+struct BuildLayout256K {
+  static constexpr std::uint32_t kArenaBytes = 256 * 1024;      ///< local memory of a core
+  static constexpr std::uint32_t kCodeBudgetBytes = 60 * 1024;  ///< of it for code
+  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;  ///< of it for the stack
+  static constexpr std::uint32_t kRunTriangles = 2048;          ///< that one item codes and sorts
+  static constexpr std::uint32_t kCacheBlocks = 1024;           ///< blocks of eight vertices, a power of two
+  static constexpr std::uint32_t kChunkTriangles = 32;          ///< whose corners are asked for at once
+  static constexpr std::uint32_t kIndexWindow = 512;            ///< triangles
+  static constexpr std::uint32_t kSamples = 8192;               ///< codes by which buckets are chosen, at most
+  static constexpr std::uint32_t kBucketKeys = 7680;            ///< that are sorted or split in the store
+  static constexpr std::uint32_t kDigitBits = 10;               ///< of a code, sorted at once
+  static constexpr std::uint32_t kFewDigitBits = 6;             ///< the same for a few keys
+  static constexpr std::uint32_t kTopSamples = 4096;            ///< codes that guide the splits of large ranges
+  static constexpr std::uint32_t kNodeLag = 2;                  ///< nodes of a level that wait for their triangles
+};
+
+/// Sizes of a core of 64 KB.
+struct BuildLayout64K {
+  /// @cond
+  static constexpr std::uint32_t kArenaBytes = 64 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 24 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024;
+  static constexpr std::uint32_t kRunTriangles = 1024;
+  static constexpr std::uint32_t kCacheBlocks = 64;
+  static constexpr std::uint32_t kChunkTriangles = 16;
+  static constexpr std::uint32_t kIndexWindow = 32;
+  static constexpr std::uint32_t kSamples = 1024;
+  static constexpr std::uint32_t kBucketKeys = 768;
+  static constexpr std::uint32_t kDigitBits = 6;
+  static constexpr std::uint32_t kFewDigitBits = 6;
+  static constexpr std::uint32_t kTopSamples = 512;
+  static constexpr std::uint32_t kNodeLag = 1;
+  /// @endcond
+};
+
+/// What is built and where. All addresses are multiples of kLineBytes. Memory behind the arrays of vertices and triangles
+/// is readable up to a multiple of 16 bytes.
+struct BuildInput {
+  MainAddress vertices;   ///< Vec3[vertex_count]
+  MainAddress triangles;  ///< UVec3[triangle_count]
+  std::uint32_t vertex_count = 0;
+  std::uint32_t triangle_count = 0;  ///< at most kMaxTreeTriangles
+  std::uint32_t leaf_triangles = 8;  ///< records of a leaf, 1..kMaxTreeLeaf
+  TreeOrder order = TreeOrder::kForAnyHit;
+  MainAddress records;  ///< VertexTriangle[record_room]
+  MainAddress nodes;    ///< TreeNode[node_room]
+  std::uint32_t record_room = 0;
+  std::uint32_t node_room = 0;
+  MainAddress result;   ///< BuildResult
+  MainAddress scratch;  ///< build_scratch_bytes()
+};
+
+/// What the last pass writes.
+struct alignas(32) BuildResult {
+  TreeSize size;
+  std::uint32_t reserved[6];
+};
+static_assert(sizeof(BuildResult) == 64);
+
+// --- Records between passes ---------------------------------------------------------------------------------------
+
+/// A box: bounds of a run of vertices, or of what a child holds.
+struct CornerBox {
+  CornerQuad low, high;
+};
+static_assert(sizeof(CornerBox) == 32);
+
+/// What coding a run of triangles has found.
+struct RunPart {
+  FourBoxes bounds;     ///< lane by lane, so that the sign of a zero is that of the first triangle that has it
+  std::uint32_t count;  ///< of triangles that have an area: keys
+  std::uint32_t reserved[7];
+};
+static_assert(sizeof(RunPart) == 128);
+
+/// All triangles.
+struct BuildState {
+  float low[4], high[4];
+  std::uint32_t triangle_count;  ///< kept
+  std::uint32_t bucket_count;    ///< that are not empty for sure
+  std::uint32_t reserved[22];
+};
+static_assert(sizeof(BuildState) == 128);
+
+/// A sorted key. Where its code is that of more than kFewTreeTriangles, `again` is the key that stands at this place once
+/// they are coded again.
+struct alignas(16) SortedKey {
+  TreeKey key, again;
+};
+static_assert(sizeof(SortedKey) == 16);
+
+/// A range of sorted keys that one core makes into a leaf or into a node with all that is below it.
+struct Piece {
+  std::uint32_t begin, end;
+  std::uint32_t depth;   ///< of the node; 0: a leaf
+  std::uint32_t bucket;  ///< that it is in
+};
+static_assert(sizeof(Piece) == 16);
+
+/// What became of a piece, or of a node above the pieces.
+struct PieceResult {
+  float low[3], area;
+  float high[3];
+  std::uint32_t number;  ///< of its node: a piece's among those of its bucket and level, else in the tree
+};
+static_assert(sizeof(PieceResult) == 32);
+
+/// Neighbouring pieces: an item.
+struct SubtreeBucket {
+  std::uint32_t first_piece, piece_count;
+  std::uint32_t begin, end;  ///< keys
+};
+static_assert(sizeof(SubtreeBucket) == 16);
+
+/// Nodes of each level of a bucket; or the numbers of the first of them.
+struct LevelCounts {
+  std::uint32_t of[16];  ///< by depth - 1
+};
+static_assert(sizeof(LevelCounts) == 64 && kMaxTreeDepth <= 16);
+
+/// A node above the pieces, in the order of a walk that visits a node before its children.
+struct alignas(32) TopNode {
+  static constexpr std::uint32_t kTop = 1u << 31;  ///< of a child: the number of a TopNode is below, else of a Piece
+  std::uint32_t begin, depth, child_count;
+  std::uint32_t number;  ///< of the node in the tree
+  std::uint32_t children[kTreeWidth];
+  std::uint32_t reserved[12];
+};
+static_assert(sizeof(TopNode) == 128);
+
+/// What splitting the large ranges has made.
+struct alignas(32) TopState {
+  std::uint32_t top_count, piece_count, bucket_count;
+  std::uint32_t reserved[29];
+};
+static_assert(sizeof(TopState) == 128);
+
+// --- Plan ---------------------------------------------------------------------------------------------------------
+
+inline constexpr std::uint32_t kVertexItem = 2048;    ///< vertices that one item bounds
+inline constexpr std::uint32_t kVertexWindow = 256;   ///< of them at once
+inline constexpr std::uint32_t kBlockVertices = 8;    ///< of a block of the cache
+inline constexpr std::uint32_t kMostRunSamples = 64;
+inline constexpr std::uint32_t kNoSample = ~0u;       ///< more than any code
+inline constexpr std::uint32_t kRunGroup = 8;         ///< runs whose cuts one item finds
+inline constexpr std::uint32_t kBucketPieces = 256;   ///< of a bucket, at most
+inline constexpr std::uint32_t kVertexBytes = sizeof(Vec3), kIndexBytes = sizeof(UVec3);
+static_assert(kVertexBytes == 12 && kIndexBytes == 12);
+
+/// The passes in their order.
+enum class BuildPass : std::uint8_t { kBounds, kCodes, kBuckets, kCuts, kSort, kTop, kSubtrees, kJoin, kNumbers, kCount };
+inline constexpr std::uint32_t kBuildPassCount = static_cast<std::uint32_t>(BuildPass::kCount);
+
+/// Counts and places that follow from the input and a layout's sizes.
+struct BuildPlan {
+  BuildInput input;
+  std::uint32_t vertex_items, run_count, run_stride;  ///< run_stride: entries of a row of cuts, a multiple of kRunGroup
+  std::uint32_t run_samples;    ///< of a run
+  std::uint32_t sampled_runs;   ///< every so many'th run is sampled
+  std::uint32_t bucket_room;    ///< buckets that are sorted, at most
+  std::uint32_t bucket_limit;   ///< keys of one, as far as samples tell
+  std::uint32_t piece_limit;    ///< triangles of a piece that can be split
+  std::uint32_t subtree_room;   ///< buckets of pieces, at most
+  std::uint32_t item_counts[kBuildPassCount];
+  MainAddress vertex_parts, run_keys, samples, run_parts, state, splitters, cuts, sorted, raw_records, top_state, tops,
+      top_results, pieces, piece_results, buckets, level_counts, level_firsts, raw_nodes;
+  std::uint64_t end;  ///< of scratch memory
+};
+
+/// @returns how many nodes are made of this many triangles at most, from the start of a piece on.
+[[nodiscard]] constexpr std::uint64_t raw_node_place(std::uint64_t triangles, std::uint32_t leaf_triangles) {
+  // See most_tree_nodes(); without its constant, as a piece has more triangles than a leaf.
+  return leaf_triangles < 15 ? triangles * 16 / (15 * (leaf_triangles + 1)) : triangles / 15;
+}
+
+/// Errors: kBadParameter, kTooManyTriangles: as of build_tree().
+template <class Layout>
+[[nodiscard]] constexpr Status plan_build(const BuildInput& input, BuildPlan& plan) {
+  if (input.leaf_triangles == 0 || input.leaf_triangles > kMaxTreeLeaf) return Status::kBadParameter;
+  if (input.triangle_count > kMaxTreeTriangles) return Status::kTooManyTriangles;
+  const std::uint32_t n = input.triangle_count;
+  const auto shares = [](std::uint64_t count, std::uint64_t share) {
+    return static_cast<std::uint32_t>((count + share - 1) / share);
+  };
+  plan.input = input;
+  plan.vertex_items = shares(input.vertex_count, kVertexItem);
+  plan.run_count = shares(n, Layout::kRunTriangles);
+  plan.run_stride = round_up(plan.run_count, kRunGroup);
+  plan.sampled_runs = 1;
+  while (std::uint64_t{shares(plan.run_count, plan.sampled_runs)} * 4 > Layout::kSamples) ++plan.sampled_runs;
+  plan.run_samples = 4;
+  while (plan.run_samples * 8 <= Layout::kRunTriangles && plan.run_samples < kMostRunSamples &&
+         std::uint64_t{shares(plan.run_count, plan.sampled_runs)} * plan.run_samples * 2 <= Layout::kSamples) {
+    plan.run_samples *= 2;
+  }
+  // Enough shares that cores end at about the same time, and not so many that their beginnings count.
+  const auto clamped = [](std::uint32_t value, std::uint32_t low, std::uint32_t high) {
+    return value < low ? low : value > high ? high : value;
+  };
+  plan.bucket_limit = clamped(n / 48, Layout::kBucketKeys / 16, Layout::kBucketKeys * 15 / 32);
+  plan.bucket_room = 2 * shares(n, plan.bucket_limit) + 2;
+  plan.piece_limit = clamped(n / 64, Layout::kBucketKeys / 16, Layout::kBucketKeys);
+  const std::uint32_t top_room = (kMaxTreeDepth - 1) * shares(n, plan.piece_limit) + 1;
+  const std::uint32_t piece_room = top_room * kTreeWidth;
+  plan.subtree_room = 2 * shares(n, plan.piece_limit) + 2 + shares(piece_room, kBucketPieces);
+  std::uint32_t items[kBuildPassCount] = {plan.vertex_items, plan.run_count, 1, plan.run_stride / kRunGroup,
+                                          plan.bucket_room, 1, plan.subtree_room, 1, plan.subtree_room};
+  for (std::uint32_t i = 0; i < kBuildPassCount; ++i) plan.item_counts[i] = items[i];
+  std::uint64_t end = input.scratch.value;
+  const auto place = [&end](std::uint64_t bytes) {
+    const MainAddress address{end};
+    end += round_up(bytes, std::uint64_t{kLineBytes});
+    return address;
+  };
+  plan.vertex_parts = place(sizeof(CornerBox) * std::uint64_t{plan.vertex_items});
+  plan.run_keys = place(sizeof(TreeKey) * std::uint64_t{Layout::kRunTriangles} * plan.run_count);
+  plan.samples = place(std::uint64_t{4} * plan.run_samples * shares(plan.run_count, plan.sampled_runs));
+  plan.run_parts = place(sizeof(RunPart) * std::uint64_t{plan.run_count});
+  plan.state = place(sizeof(BuildState));
+  plan.splitters = place(std::uint64_t{4} * (plan.bucket_room + 1));
+  plan.cuts = place(std::uint64_t{4} * plan.run_stride * (plan.bucket_room + 1));
+  plan.sorted = place(sizeof(SortedKey) * std::uint64_t{n});
+  plan.raw_records = place(sizeof(VertexTriangle) * std::uint64_t{n});
+  plan.top_state = place(sizeof(TopState));
+  plan.tops = place(sizeof(TopNode) * std::uint64_t{top_room});
+  plan.top_results = place(sizeof(PieceResult) * std::uint64_t{top_room});
+  plan.pieces = place(sizeof(Piece) * std::uint64_t{piece_room});
+  plan.piece_results = place(sizeof(PieceResult) * std::uint64_t{piece_room});
+  plan.buckets = place(sizeof(SubtreeBucket) * std::uint64_t{plan.subtree_room});
+  plan.level_counts = place(sizeof(LevelCounts) * std::uint64_t{plan.subtree_room});
+  plan.level_firsts = place(sizeof(LevelCounts) * std::uint64_t{plan.subtree_room});
+  plan.raw_nodes = place(sizeof(TreeNode) * (raw_node_place(n, input.leaf_triangles) + 1));
+  plan.end = end;
+  return Status::kOk;
+}
+
+/// @returns bytes of main memory that the passes work in.
+template <class Layout>
+[[nodiscard]] constexpr std::uint64_t build_scratch_bytes(BuildInput input) {
+  BuildPlan plan{};
+  input.scratch = MainAddress{0};
+  return plan_build<Layout>(input, plan) == Status::kOk ? plan.end : 0;
+}
+
+}  // namespace gridiron

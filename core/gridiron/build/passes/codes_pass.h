@@ -1,0 +1,257 @@
+// Second pass of a build: codes runs of triangles, drops those without an area, and sorts each run. Triangles are also
+// written as records, so that later passes find all of one in 48 bytes.
+// Memory: the pass's store. Threads: one core. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/build/passes/build_plan.h>
+#include <gridiron/build/passes/pass_sort.h>
+#include <gridiron/build/passes/pass_tools.h>
+#include <gridiron/build/tree/tree_box.h>
+#include <gridiron/build/tree/tree_curve.h>
+
+namespace gridiron {
+
+inline constexpr std::uint32_t kBlockBytes = kBlockVertices * kVertexBytes;
+static_assert(kBlockBytes % kPortableCongruenceBytes == 0);
+
+template <class Layout>
+struct CodesStore {
+  static constexpr std::uint32_t kCorners = 3 * Layout::kChunkTriangles;
+  static constexpr std::uint32_t kLoneBytes = window_bytes<Vec3>(1);
+  static constexpr std::uint32_t kPartWindow = 16;
+
+  alignas(128) std::byte blocks[Layout::kCacheBlocks * kBlockBytes];  // of vertices
+  std::byte lone[2][kCorners * kLoneBytes];                           // vertices that found no place there
+  alignas(128) std::byte indices[2][window_bytes<UVec3>(Layout::kIndexWindow)];
+  alignas(128) VertexTriangle records[4][Layout::kChunkTriangles];
+  alignas(128) TreeKey keys[Layout::kRunTriangles];
+  alignas(128) TreeKey spare[Layout::kRunTriangles];
+  alignas(128) std::uint32_t samples[kMostRunSamples];
+  alignas(128) RunPart part;
+  alignas(128) std::byte vertex_parts[2 * window_bytes<CornerBox>(kPartWindow)];
+  std::uint32_t blocks_held[Layout::kCacheBlocks];  // block + 1; 0: none
+  std::uint32_t block_users[Layout::kCacheBlocks];  // the last chunk that asked for it
+  std::uint32_t corners[2][kCorners];               // of a chunk's triangles: bytes from blocks on
+  std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
+};
+
+/// Codes runs of triangles, one after another.
+template <class Layout, class P>
+class RunCoder {
+ public:
+  RunCoder(Transfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan, const TreeCurve& curve)
+      : transfers_(transfers), store_(store), plan_(plan), curve_(curve) {
+    for (std::uint32_t i = 0; i < Layout::kCacheBlocks; ++i) store.blocks_held[i] = store.block_users[i] = 0;
+  }
+
+  /// Errors: kBadIndex.
+  [[nodiscard]] Status code(std::uint32_t run) {
+    const std::uint64_t first = std::uint64_t{run} * kRun, rest = plan_.input.triangle_count - first;
+    const std::uint32_t count = rest < kRun ? static_cast<std::uint32_t>(rest) : kRun;
+    const std::uint32_t chunks = (count + kChunk - 1) / kChunk;
+    bounds_ = FourBoxes::none();
+    kept_ = 0;
+    const auto chunk_count = [count](std::uint32_t chunk) {
+      return count - chunk * kChunk < kChunk ? count - chunk * kChunk : kChunk;
+    };
+    GRIDIRON_TRY(get_indices(first, count, 0));
+    for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
+      GRIDIRON_TRY(ask_for_corners(first, count, chunk, chunk_count(chunk)));
+      if (chunk > 0) GRIDIRON_TRY(take(first, chunk - 1, chunk_count(chunk - 1)));
+      ++clock_;
+    }
+    GRIDIRON_TRY(take(first, chunks - 1, chunk_count(chunks - 1)));
+    clock_ += 2;  // nothing that was asked for is needed any more
+    return finish(run);
+  }
+
+  /// Waits for all that is under way.
+  [[nodiscard]] Status end() { return wait_for(transfers_, kFirstOutputTag, 6); }
+
+ private:
+  static constexpr std::uint32_t kRun = Layout::kRunTriangles, kChunk = Layout::kChunkTriangles;
+  static constexpr std::uint8_t kIndexTag = kFirstMacroTag, kCornerTag = kFirstTriangleTag;  // and the next
+  static constexpr std::uint8_t kKeysTag = kFirstOutputTag + 4, kPartTag = kKeysTag + 1;     // records: four before
+  static_assert(Layout::kIndexWindow % kChunk == 0 && kChunk % 4 == 0);
+
+  [[nodiscard]] Window<UVec3> index_window(std::uint64_t first, std::uint32_t window) {
+    return {store_.indices[window % 2], plan_.input.triangles, first + std::uint64_t{window} * Layout::kIndexWindow};
+  }
+  [[nodiscard]] Status get_indices(std::uint64_t first, std::uint32_t count, std::uint32_t window) {
+    const std::uint32_t begin = window * Layout::kIndexWindow;
+    if (begin >= count) return Status::kOk;
+    const std::uint32_t rest = count - begin;
+    return index_window(first, window)
+        .get(transfers_, rest < Layout::kIndexWindow ? rest : Layout::kIndexWindow,
+             static_cast<std::uint8_t>(kIndexTag + window % 2));
+  }
+
+  // Finds or asks for the corners of a chunk. The chunk before it has not been taken yet.
+  [[nodiscard]] Status ask_for_corners(std::uint64_t first, std::uint32_t run_count, std::uint32_t chunk,
+                                       std::uint32_t count) {
+    const std::uint32_t begin = chunk * kChunk, window = begin / Layout::kIndexWindow;
+    if (begin % Layout::kIndexWindow == 0) {
+      GRIDIRON_TRY(get_indices(first, run_count, window + 1));
+      GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kIndexTag + window % 2)));
+    }
+    const UVec3* const triangles = index_window(first, window).elements() + begin % Layout::kIndexWindow;
+    std::uint32_t* const corners = store_.corners[chunk % 2];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const UVec3 triangle = triangles[i];
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t index = triangle[static_cast<int>(k)];
+        if (index >= plan_.input.vertex_count) return Status::kBadIndex;
+        const std::uint32_t block = index / kBlockVertices, slot = block % Layout::kCacheBlocks;
+        if (store_.blocks_held[slot] != block + 1) {
+          // Whether this chunk or the one before needs what is there.
+          if (store_.block_users[slot] + 1 >= clock_) {
+            GRIDIRON_TRY(ask_for_lone(index, chunk, 3 * i + k));
+            continue;
+          }
+          GRIDIRON_TRY(ask_for_block(block, slot, chunk));
+        }
+        store_.block_users[slot] = clock_;
+        corners[3 * i + k] = slot * kBlockBytes + index % kBlockVertices * kVertexBytes;
+      }
+    }
+    return Status::kOk;
+  }
+  [[nodiscard]] static std::uint8_t corner_tag(std::uint32_t chunk) {
+    return static_cast<std::uint8_t>(kCornerTag + chunk % 2);
+  }
+  [[nodiscard]] Status ask_for_block(std::uint32_t block, std::uint32_t slot, std::uint32_t chunk) {
+    const std::uint32_t rest = (plan_.input.vertex_count - block * kBlockVertices) * kVertexBytes;
+    store_.blocks_held[slot] = block + 1;
+    return transfers_.get(store_.blocks + slot * kBlockBytes,
+                          plan_.input.vertices.offset_by(std::uint64_t{block} * kBlockBytes),
+                          rest < kBlockBytes ? round_up(rest, kPortableGranuleBytes) : kBlockBytes, corner_tag(chunk));
+  }
+  [[nodiscard]] GRIDIRON_OUTLINE Status ask_for_lone(std::uint32_t index, std::uint32_t chunk, std::uint32_t corner) {
+    std::byte* const buffer = store_.lone[chunk % 2] + corner * CodesStore<Layout>::kLoneBytes;
+    const Window<Vec3> window(buffer, plan_.input.vertices, index);
+    store_.corners[chunk % 2][corner] =
+        static_cast<std::uint32_t>(reinterpret_cast<const std::byte*>(window.elements()) - store_.blocks);
+    return window.get(transfers_, 1, corner_tag(chunk));
+  }
+
+  // Makes records and keys of a chunk's triangles.
+  [[nodiscard]] Status take(std::uint64_t first, std::uint32_t chunk, std::uint32_t count) {
+    const auto record_tag = static_cast<std::uint8_t>(kFirstOutputTag + chunk % 4);
+    GRIDIRON_TRY(transfers_.wait(corner_tag(chunk)));
+    GRIDIRON_TRY(transfers_.wait(record_tag));
+    VertexTriangle* const records = store_.records[chunk % 4];
+    const std::uint64_t chunk_first = first + chunk * kChunk;
+    const std::uint32_t* const places = store_.corners[chunk % 2];
+    for (std::uint32_t i = 0; i < count; i += 4) {
+      CornerQuads corners[4];
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        const std::uint32_t j = i + k < count ? i + k : count - 1;
+        corners[k] = {corner_at(places[3 * j]), corner_at(places[3 * j + 1]), corner_at(places[3 * j + 2])};
+        write_record(corners[k], static_cast<std::uint32_t>(chunk_first) + j, records[j]);
+      }
+      const std::uint32_t there = count - i < 4 ? (1u << (count - i)) - 1u : 15u;
+      take_four(FourTriangles::of(corners), static_cast<std::uint32_t>(chunk_first) + i, there);
+    }
+    return transfers_.put(records, plan_.raw_records.offset_by(chunk_first * sizeof(VertexTriangle)),
+                          count * static_cast<std::uint32_t>(sizeof(VertexTriangle)), record_tag);
+  }
+  [[nodiscard]] GRIDIRON_INLINE CornerQuad corner_at(std::uint32_t place) const {
+    // Not the word behind it, which may be under way.
+    return quad_of(*reinterpret_cast<const Vec3*>(store_.blocks + place));
+  }
+  static GRIDIRON_INLINE void write_record(const CornerQuads& corners, std::uint32_t id, VertexTriangle& record) {
+    using L = Lanes<4>;
+    auto* const words = reinterpret_cast<float*>(&record);
+    const CornerQuad a = corners.a, b = corners.b, c = corners.c;
+    const L::Int end = {{0, 0, 0, static_cast<std::int32_t>(id)}};
+    const L::Float cz = L::shuffle_quads<2, 3, 3, 3>(c);  // the last lane is 0
+    L::shuffle_quads<0, 1, 2, 4>(a, b).store(words);
+    L::shuffle_quads<1, 2, 4, 5>(b, c).store(words + 4);
+    L::floats_of(L::words_of(cz) | end).store(words + 8);
+  }
+  GRIDIRON_INLINE void take_four(const FourTriangles& triangles, std::uint32_t first, std::uint32_t there) {
+    const std::uint32_t kept = triangles.with_area() & there;
+    FourBoxes boxes = triangles.boxes();
+    const Lanes<4>::Int codes = curve_.codes_of(boxes);
+    if (kept == 15u) {
+      TreeKey::store_four(codes, first, store_.keys + kept_);
+      kept_ += 4;
+    } else {
+      for (int lane = 0; lane < 4; ++lane) {
+        if ((kept >> lane & 1u) == 0) continue;
+        store_.keys[kept_++] =
+            TreeKey::of(static_cast<std::uint32_t>(codes[lane]), first + static_cast<std::uint32_t>(lane));
+      }
+      boxes.keep(kept);
+    }
+    bounds_.add(boxes);
+  }
+
+  // Sorts the run and sends keys, samples and bounds on their way.
+  [[nodiscard]] Status finish(std::uint32_t run) {
+    GRIDIRON_TRY(transfers_.wait(kKeysTag));
+    const bool is_in_spare =
+        sort_run<Layout::kDigitBits, 1>(store_.keys, store_.spare, kept_, kTreeCodeBits, store_.counts);
+    static_assert((kTreeCodeBits + Layout::kDigitBits - 1) / Layout::kDigitBits % 2 == 1);
+    const TreeKey* const sorted = is_in_spare ? store_.spare : store_.keys;
+    if (kept_ > 0) {
+      GRIDIRON_TRY(transfers_.put(sorted, plan_.run_keys.offset_by(std::uint64_t{run} * kRun * sizeof(TreeKey)),
+                                  round_up(kept_ * static_cast<std::uint32_t>(sizeof(TreeKey)), kPortableGranuleBytes),
+                                  kKeysTag));
+    }
+    GRIDIRON_TRY(transfers_.wait(kPartTag));
+    if (run % plan_.sampled_runs == 0) {
+      // In the middle of equal shares; of places behind the last key there is none.
+      const std::uint32_t step = kRun / plan_.run_samples;
+      std::uint32_t* const samples = store_.samples;
+      for (std::uint32_t i = 0; i < plan_.run_samples; ++i) {
+        const std::uint32_t place = i * step + step / 2;
+        samples[i] = place < kept_ ? sorted[place].code() : kNoSample;
+      }
+      const std::uint64_t bytes = std::uint64_t{4} * plan_.run_samples;
+      GRIDIRON_TRY(transfers_.put(samples, plan_.samples.offset_by(run / plan_.sampled_runs * bytes),
+                                  static_cast<std::uint32_t>(bytes), kPartTag));
+    }
+    RunPart& part = store_.part;
+    part = {bounds_, kept_, {}};
+    return transfers_.put(&part, plan_.run_parts.offset_by(run * sizeof(RunPart)), sizeof(RunPart), kPartTag);
+  }
+
+  Transfers<P>& transfers_;
+  CodesStore<Layout>& store_;
+  const BuildPlan& plan_;
+  TreeCurve curve_;
+  FourBoxes bounds_;
+  std::uint32_t kept_ = 0;
+  std::uint32_t clock_ = 2;  // chunks
+};
+
+/// The lattice of all triangles' middles, from the bounds of vertices.
+template <class Layout, class P>
+[[nodiscard]] Status find_curve(Transfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan,
+                                QuadBox& middles) {
+  QuadBox vertices;
+  GRIDIRON_TRY((for_each_window<CornerBox, CodesStore<Layout>::kPartWindow>(
+      transfers, store.vertex_parts, plan.vertex_parts, 0, plan.vertex_items, kFirstMacroTag,
+      [&](const CornerBox* parts, std::uint64_t, std::uint32_t count) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+          vertices.low = Lanes<4>::min(parts[i].low, vertices.low);
+          vertices.high = Lanes<4>::max(parts[i].high, vertices.high);
+        }
+        return Status::kOk;
+      })));
+  middles = {vertices.low + vertices.low, vertices.high + vertices.high};
+  return Status::kOk;
+}
+
+/// Writes run_keys, samples, run_parts and raw_records. Items: runs. Errors: kBadIndex.
+template <class Layout, class P>
+[[nodiscard]] Status run_codes_pass(Transfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan) {
+  QuadBox middles;
+  GRIDIRON_TRY(find_curve(transfers, store, plan, middles));
+  RunCoder<Layout, P> coder(transfers, store, plan, TreeCurve(middles));
+  GRIDIRON_TRY(for_each_item(transfers, plan.run_count, [&](std::uint32_t run) { return coder.code(run); }));
+  return coder.end();
+}
+
+}  // namespace gridiron
