@@ -35,13 +35,12 @@ template <class P>
           return Status::kOk;
         })));
     if ((inside.bits() & 7u) != 7u) return Status::kBadVertex;
-    GRIDIRON_TRY(transfers.wait(kFirstOutputTag));
     store.part = {box.low, box.high};
-    return transfers.put(&store.part, plan.vertex_parts.offset_by(sizeof(CornerBox) * std::uint64_t{item}),
-                         sizeof(CornerBox), kFirstOutputTag);
+    GRIDIRON_TRY(transfers.put(&store.part, plan.vertex_parts.offset_by(sizeof(CornerBox) * std::uint64_t{item}),
+                               sizeof(CornerBox), kFirstOutputTag));
+    return transfers.wait(kFirstOutputTag);
   };
-  GRIDIRON_TRY(for_each_item(transfers, plan.vertex_items, bound));
-  return transfers.wait(kFirstOutputTag);
+  return for_each_item(transfers, plan.vertex_items, bound);
 }
 
 }  // namespace gridiron

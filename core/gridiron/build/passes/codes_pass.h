@@ -40,9 +40,7 @@ template <class Layout, class P>
 class RunCoder {
  public:
   RunCoder(Transfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan, const TreeCurve& curve)
-      : transfers_(transfers), store_(store), plan_(plan), curve_(curve) {
-    for (std::uint32_t i = 0; i < Layout::kCacheBlocks; ++i) store.blocks_held[i] = store.block_users[i] = 0;
-  }
+      : transfers_(transfers), store_(store), plan_(plan), curve_(curve) {}
 
   /// Errors: kBadIndex.
   [[nodiscard]] Status code(std::uint32_t run) {
@@ -51,6 +49,9 @@ class RunCoder {
     const std::uint32_t chunks = (count + kChunk - 1) / kChunk;
     bounds_ = FourBoxes::none();
     kept_ = 0;
+    // What the run before has left is not used: transfers of an item depend on nothing but the item.
+    clock_ = 2;
+    for (std::uint32_t i = 0; i < Layout::kCacheBlocks; ++i) store_.blocks_held[i] = store_.block_users[i] = 0;
     const auto chunk_count = [count](std::uint32_t chunk) {
       return count - chunk * kChunk < kChunk ? count - chunk * kChunk : kChunk;
     };
@@ -61,12 +62,9 @@ class RunCoder {
       ++clock_;
     }
     GRIDIRON_TRY(take(first, chunks - 1, chunk_count(chunks - 1)));
-    clock_ += 2;  // nothing that was asked for is needed any more
-    return finish(run);
+    GRIDIRON_TRY(finish(run));
+    return wait_for(transfers_, kFirstOutputTag, 6);
   }
-
-  /// Waits for all that is under way.
-  [[nodiscard]] Status end() { return wait_for(transfers_, kFirstOutputTag, 6); }
 
  private:
   static constexpr std::uint32_t kRun = Layout::kRunTriangles, kChunk = Layout::kChunkTriangles;
@@ -189,7 +187,6 @@ class RunCoder {
 
   // Sorts the run and sends keys, samples and bounds on their way.
   [[nodiscard]] Status finish(std::uint32_t run) {
-    GRIDIRON_TRY(transfers_.wait(kKeysTag));
     const bool is_in_spare =
         sort_run<Layout::kDigitBits, 1>(store_.keys, store_.spare, kept_, kTreeCodeBits, store_.counts);
     static_assert((kTreeCodeBits + Layout::kDigitBits - 1) / Layout::kDigitBits % 2 == 1);
@@ -199,7 +196,6 @@ class RunCoder {
                                   round_up(kept_ * static_cast<std::uint32_t>(sizeof(TreeKey)), kPortableGranuleBytes),
                                   kKeysTag));
     }
-    GRIDIRON_TRY(transfers_.wait(kPartTag));
     if (run % plan_.sampled_runs == 0) {
       // In the middle of equal shares; of places behind the last key there is none.
       const std::uint32_t step = kRun / plan_.run_samples;
@@ -223,7 +219,7 @@ class RunCoder {
   TreeCurve curve_;
   FourBoxes bounds_;
   std::uint32_t kept_ = 0;
-  std::uint32_t clock_ = 2;  // chunks
+  std::uint32_t clock_ = 2;  // chunks, plus two
 };
 
 /// The lattice of all triangles' middles, from the bounds of vertices.
@@ -250,8 +246,7 @@ template <class Layout, class P>
   QuadBox middles;
   GRIDIRON_TRY(find_curve(transfers, store, plan, middles));
   RunCoder<Layout, P> coder(transfers, store, plan, TreeCurve(middles));
-  GRIDIRON_TRY(for_each_item(transfers, plan.run_count, [&](std::uint32_t run) { return coder.code(run); }));
-  return coder.end();
+  return for_each_item(transfers, plan.run_count, [&](std::uint32_t run) { return coder.code(run); });
 }
 
 }  // namespace gridiron

@@ -68,10 +68,9 @@ template <class Layout, class P>
                                    kFirstOutputTag));
       }
     }
-    return Status::kOk;
+    return transfers.wait(kFirstOutputTag);
   };
-  GRIDIRON_TRY(for_each_item(transfers, plan.run_stride / kRunGroup, cut_group));
-  return transfers.wait(kFirstOutputTag);
+  return for_each_item(transfers, plan.run_stride / kRunGroup, cut_group);
 }
 
 }  // namespace gridiron

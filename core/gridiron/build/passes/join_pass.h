@@ -249,10 +249,9 @@ template <class P>
                                    static_cast<std::uint8_t>(kFirstOutputTag + side)));
       }
     }
-    return Status::kOk;
+    return wait_for(transfers, kFirstOutputTag, 2);
   };
-  GRIDIRON_TRY(for_each_item(transfers, plan.subtree_room, number));
-  return wait_for(transfers, kFirstOutputTag, 2);
+  return for_each_item(transfers, plan.subtree_room, number);
 }
 
 }  // namespace gridiron

@@ -36,6 +36,8 @@ class RecordStream {
     settle();
     return used_ < RecordRing::kSlots || (is_open_ && fits(id));
   }
+  /// Begins anew. Precondition: is_empty().
+  void reset() { front_ = back_ = used_ = taken_ = 0; }
   /// Asks for a record. Precondition: can_push().
   [[nodiscard]] GRIDIRON_INLINE Status push(std::uint32_t id) {
     if (!is_open_ || !fits(id)) {

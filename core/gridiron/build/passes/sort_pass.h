@@ -50,8 +50,7 @@ class BucketSorter {
     if (count == 0) return Status::kOk;
     if (count > kRoom) return sort_many(bucket, first, count);
 
-    GRIDIRON_TRY(take_room(first, count));
-    SortedKey* const keys = store_.keys + begin_;
+    SortedKey* const keys = store_.keys + (first & 1u);  // both ends of a transfer are congruent
     std::uint32_t taken = 0, all = 0, same = ~0u;
     GRIDIRON_TRY(each_key(bucket, [&](TreeKey key) GRIDIRON_INLINE_LAMBDA {
       keys[taken++].key = key;
@@ -64,31 +63,14 @@ class BucketSorter {
       for (std::uint32_t i = 0; i < count; ++i) keys[i].key = keys[i].again;
     }
     GRIDIRON_TRY(code_crowded(keys, count));
-    return transfers_.put(keys, plan_.sorted.offset_by(std::uint64_t{first} * sizeof(SortedKey)),
-                          count * static_cast<std::uint32_t>(sizeof(SortedKey)), tag_);
+    GRIDIRON_TRY(transfers_.put(keys, plan_.sorted.offset_by(std::uint64_t{first} * sizeof(SortedKey)),
+                                count * static_cast<std::uint32_t>(sizeof(SortedKey)), kFirstOutputTag));
+    return transfers_.wait(kFirstOutputTag);
   }
-
-  [[nodiscard]] Status end() { return wait_for(transfers_, kFirstOutputTag, 2); }
 
  private:
   static constexpr std::uint32_t kRoom = Layout::kBucketKeys;
   static constexpr std::uint32_t kPieces = SortStore<Layout>::kPieces, kPieceKeys = SortStore<Layout>::kPieceKeys;
-
-  // Finds room for keys: beside those that are on their way, or in their place once they have gone.
-  [[nodiscard]] Status take_room(std::uint32_t first, std::uint32_t count) {
-    // Both ends of a transfer are congruent.
-    const std::uint32_t behind = begin_ + used_ + ((begin_ + used_ + first) & 1u), front = first & 1u;
-    if (behind + count <= kRoom) {
-      begin_ = behind;
-    } else {
-      if (front + count > begin_) GRIDIRON_TRY(end());
-      begin_ = front;
-    }
-    used_ = count;
-    // Nor do those before the last ones lie in the way then.
-    tag_ = tag_ == kFirstOutputTag ? static_cast<std::uint8_t>(kFirstOutputTag + 1) : kFirstOutputTag;
-    return transfers_.wait(tag_);
-  }
 
   // Calls use(begins, ends, first run, count) for all runs of a bucket.
   template <class Use>
@@ -182,8 +164,6 @@ class BucketSorter {
 
   // A bucket that is larger than the store.
   [[nodiscard]] GRIDIRON_OUTLINE Status sort_many(std::uint32_t bucket, std::uint32_t first, std::uint32_t count) {
-    GRIDIRON_TRY(end());
-    begin_ = used_ = 0;
     std::uint64_t place = first;
     GRIDIRON_TRY((sort_far<Layout>(
         count, 0, store_.keys, store_.counts,
@@ -226,9 +206,7 @@ class BucketSorter {
   Transfers<P>& transfers_;
   SortStore<Layout>& store_;
   const BuildPlan& plan_;
-  std::uint32_t begin_ = 0, used_ = 0;  // of the keys that were put last
   std::uint32_t held_bucket_ = ~0u, held_run_ = 0;
-  std::uint8_t tag_ = kFirstOutputTag;
 };
 
 /// Writes sorted. Items: buckets.
@@ -236,10 +214,9 @@ template <class Layout, class P>
 [[nodiscard]] Status run_sort_pass(Transfers<P>& transfers, SortStore<Layout>& store, const BuildPlan& plan) {
   GRIDIRON_TRY(fetch(transfers, store.state, plan.state));
   BucketSorter<Layout, P> sorter(transfers, store, plan);
-  GRIDIRON_TRY(for_each_item(transfers, plan.bucket_room, [&](std::uint32_t bucket) {
+  return for_each_item(transfers, plan.bucket_room, [&](std::uint32_t bucket) {
     return bucket < store.state.bucket_count ? sorter.sort(bucket) : Status::kOk;
-  }));
-  return sorter.end();
+  });
 }
 
 }  // namespace gridiron

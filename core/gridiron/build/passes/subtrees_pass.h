@@ -84,10 +84,12 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     GRIDIRON_TRY(transfers_.get(keys_, plan_.sorted.offset_by(std::uint64_t{begin_} * sizeof(SortedKey)),
                                 (head.end - begin_) * static_cast<std::uint32_t>(sizeof(SortedKey)), kSetupTag));
     GRIDIRON_TRY(transfers_.wait(kSetupTag));
-    GRIDIRON_TRY(transfers_.wait(kCountsTag));
     store_.level_counts = {};
     raw_node_ = raw_node_place(begin_, plan_.input.leaf_triangles);
     next_record_ = record_sent_ = begin_;
+    // Tags of an item depend on nothing but the item.
+    record_side_ = first_event_ = next_node_ = next_result_ = 0;
+    stream_.reset();
     GRIDIRON_TRY((for_each_window<Piece, 16>(
         transfers_, store_.pieces, plan_.pieces, head.first_piece, head.first_piece + head.piece_count, kFirstMacroTag,
         [&](const Piece* pieces, std::uint64_t first, std::uint32_t count) -> Status {
@@ -98,11 +100,10 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
         })));
     GRIDIRON_TRY(take_events());
     GRIDIRON_TRY(send_records());
-    return transfers_.put(&store_.level_counts, plan_.level_counts.offset_by(bucket * sizeof(LevelCounts)),
-                          sizeof(LevelCounts), kCountsTag);
+    GRIDIRON_TRY(transfers_.put(&store_.level_counts, plan_.level_counts.offset_by(bucket * sizeof(LevelCounts)),
+                                sizeof(LevelCounts), kCountsTag));
+    return wait_for(transfers_, kFirstOutputTag, kOutputTagCount);
   }
-
-  [[nodiscard]] Status end() { return wait_for(transfers_, kFirstOutputTag, kOutputTagCount); }
 
  private:
   using Splits = TreeSplits<SubtreeBuilder>;
@@ -324,10 +325,9 @@ template <class Layout, class P>
   GRIDIRON_TRY(fetch(transfers, store.state, plan.state));
   GRIDIRON_TRY(fetch(transfers, store.top_state, plan.top_state));
   SubtreeBuilder<Layout, P> builder(transfers, store, plan);
-  GRIDIRON_TRY(for_each_item(transfers, plan.subtree_room, [&](std::uint32_t bucket) {
+  return for_each_item(transfers, plan.subtree_room, [&](std::uint32_t bucket) {
     return bucket < store.top_state.bucket_count ? builder.build(bucket) : Status::kOk;
-  }));
-  return builder.end();
+  });
 }
 
 }  // namespace gridiron
