@@ -90,14 +90,12 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     // Tags of an item depend on nothing but the item.
     record_side_ = first_event_ = next_node_ = next_result_ = 0;
     stream_.reset();
-    GRIDIRON_TRY((for_each_window<Piece, 16>(
-        transfers_, store_.pieces, plan_.pieces, head.first_piece, head.first_piece + head.piece_count, kFirstMacroTag,
-        [&](const Piece* pieces, std::uint64_t first, std::uint32_t count) -> Status {
-          for (std::uint32_t i = 0; i < count; ++i) {
-            GRIDIRON_TRY(add(pieces[i], static_cast<std::uint32_t>(first) + i));
-          }
-          return Status::kOk;
-        })));
+    const auto add_all = [&](const Piece* pieces, std::uint64_t first, std::uint32_t count) -> Status {
+      for (std::uint32_t i = 0; i < count; ++i) GRIDIRON_TRY(add(pieces[i], static_cast<std::uint32_t>(first) + i));
+      return Status::kOk;
+    };
+    GRIDIRON_TRY((for_each_window<Piece, 16>(transfers_, store_.pieces, plan_.pieces, head.first_piece,
+                                             head.first_piece + head.piece_count, kFirstMacroTag, add_all)));
     GRIDIRON_TRY(take_events());
     GRIDIRON_TRY(send_records());
     GRIDIRON_TRY(transfers_.put(&store_.level_counts, plan_.level_counts.offset_by(bucket * sizeof(LevelCounts)),

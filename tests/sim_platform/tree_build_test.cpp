@@ -1,0 +1,314 @@
+// The passes that build the tree on the cores: the same bytes as build_tree(), whatever the mesh, the store, the number
+// of cores, the order of items and the time that transfers take.
+// Memory: std::vector and the simulated main memory. Threads: starts some. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/passes/build_passes.h>
+#include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/sim/passes.h>
+
+#include "support/ply_load.h"
+#include "support/test_mesh.h"
+
+namespace gridiron::test {
+namespace {
+
+using sim::Completion;
+
+struct Built {
+  Status status = Status::kOk;
+  TreeSize size{};
+  std::vector<VertexTriangle> records;
+  std::vector<TreeNode> nodes;
+  std::vector<sim::FrameTrace> traces;  // of passes
+  std::string words;                    // of rules that were broken
+};
+
+Built built_by_one(const TestMesh& mesh, std::uint32_t leaf_triangles, TreeOrder order) {
+  Built tree;
+  const std::uint64_t count = mesh.triangles.size();
+  tree.records.resize(count);
+  tree.nodes.resize(most_tree_nodes(count, leaf_triangles));
+  std::vector<std::uint64_t> scratch(tree_scratch_bytes(count) / 8);
+  tree.status = build_tree(mesh.view(), leaf_triangles, tree.records, tree.nodes,
+                           std::as_writable_bytes(std::span(scratch)), tree.size, order);
+  tree.records.resize(tree.size.triangle_count);
+  tree.nodes.resize(tree.size.node_count);
+  return tree;
+}
+
+// A core that claims the last item first.
+template <class P>
+class Backwards {
+ public:
+  Backwards(P& inner, std::uint32_t count) : inner_(inner), count_(count) {}
+  [[nodiscard]] PlatformLimits limits() const { return inner_.limits(); }
+  Status get(void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    return inner_.get(local, address, bytes, tag);
+  }
+  Status put(const void* local, MainAddress address, std::uint32_t bytes, Tag tag) {
+    return inner_.put(local, address, bytes, tag);
+  }
+  Status wait(TagMask tags) { return inner_.wait(tags); }
+  ItemClaim claim_item() {
+    ItemClaim claim = inner_.claim_item();
+    claim.item = count_ - 1 - claim.item;
+    return claim;
+  }
+
+ private:
+  P& inner_;
+  std::uint32_t count_;
+};
+
+struct Way {
+  std::uint32_t cores = 1;
+  Completion completion = Completion::kEarly;
+  std::uint64_t seed = 0;
+  sim::Mode mode = sim::Mode::kChecked;
+  std::uint32_t queue_depth = 16;
+  bool backwards = false;
+  std::optional<std::uint32_t> record_room{}, node_room{};
+};
+
+template <class Layout>
+Built built_by_cores(const TestMesh& mesh, std::uint32_t leaf_triangles, TreeOrder order, const Way& way) {
+  const std::uint64_t count = mesh.triangles.size();
+  BuildInput input;
+  input.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
+  input.triangle_count = static_cast<std::uint32_t>(count);
+  input.leaf_triangles = leaf_triangles;
+  input.order = order;
+  input.record_room = way.record_room.value_or(input.triangle_count);
+  input.node_room = way.node_room.value_or(static_cast<std::uint32_t>(most_tree_nodes(count, leaf_triangles)));
+  const std::uint64_t scratch_bytes = build_scratch_bytes<Layout>(input);
+  sim::SimMemory memory(scratch_bytes + 16 * mesh.vertices.size() + 64 * count + 512ull * input.node_room + (1u << 20));
+  const auto place = [&memory](std::uint64_t bytes) { return memory.allocate(std::max<std::uint64_t>(bytes, 128)).value(); };
+  const auto vertices = place(12 * mesh.vertices.size() + 16), triangles = place(12 * count + 16);
+  const auto records = place(sizeof(VertexTriangle) * count), nodes = place(sizeof(TreeNode) * input.node_room);
+  const auto result = place(sizeof(BuildResult)), scratch = place(scratch_bytes);
+  std::memcpy(vertices.bytes.data(), mesh.vertices.data(), 12 * mesh.vertices.size());
+  std::memcpy(triangles.bytes.data(), mesh.triangles.data(), 12 * count);
+  for (const auto& region : {records, nodes, result, scratch}) std::ranges::fill(region.bytes, std::byte{0xA5});
+  input.vertices = vertices.address;
+  input.triangles = triangles.address;
+  input.records = records.address;
+  input.nodes = nodes.address;
+  input.result = result.address;
+  input.scratch = scratch.address;
+
+  Built tree;
+  BuildPlan plan{};
+  tree.status = plan_build<Layout>(input, plan);
+  if (tree.status != Status::kOk) return tree;
+  std::vector<sim::Pass> passes;
+  std::vector<sim::MainRange> writable;
+  for (const auto& region : {records, nodes, result, scratch}) {
+    writable.push_back({region.address.value, region.address.value + region.bytes.size()});
+  }
+  for (std::uint32_t i = 0; i < kBuildPassCount; ++i) {
+    const auto kernel = [&plan, &way, i](auto& core, std::span<std::byte> data) {
+      // Whatever ran before has left something there.
+      std::ranges::fill(data, std::byte{0x5A});
+      auto& store = *reinterpret_cast<BuildStore<Layout>*>(data.data());
+      if (!way.backwards) return run_build_pass(core, store, plan, static_cast<BuildPass>(i));
+      Backwards reversed(core, plan.item_counts[i]);
+      return run_build_pass(reversed, store, plan, static_cast<BuildPass>(i));
+    };
+    passes.push_back({.name = "pass",
+                      .items = {.most = plan.item_counts[i]},
+                      .data_bytes = sizeof(BuildStore<Layout>),
+                      .writable = writable,
+                      .kernel = sim::PassKernel(kernel)});
+  }
+  sim::ChipOptions options;
+  options.mode = way.mode;
+  options.threads = way.cores;
+  options.completion = way.completion;
+  options.seed = way.seed;
+  options.limits.queue_depth = way.queue_depth;
+  options.store = Layout::kArenaBytes > 65536 ? sim::StoreSize::k256KB : sim::StoreSize::k64KB;
+  sim::PassesResult run = sim::run_passes(memory, passes, options);
+  tree.status = run.status;
+  for (sim::PassRun& pass : run.passes) {
+    for (const sim::Violation& violation : pass.result.violations) tree.words += violation.detail + "\n";
+    tree.traces.push_back(std::move(pass.result.trace));
+  }
+  if (tree.status != Status::kOk) return tree;
+  std::memcpy(&tree.size, result.bytes.data(), sizeof tree.size);
+  const auto taken = [](const auto& region, auto& elements, std::uint32_t n) {
+    elements.resize(n);
+    std::memcpy(static_cast<void*>(elements.data()), region.bytes.data(), n * sizeof elements[0]);
+    const auto rest = region.bytes.subspan(n * sizeof elements[0]);
+    return std::ranges::all_of(rest, [](std::byte byte) { return byte == std::byte{0xA5}; });
+  };
+  EXPECT_TRUE(taken(records, tree.records, tree.size.triangle_count)) << "a record behind the last one";
+  EXPECT_TRUE(taken(nodes, tree.nodes, tree.size.node_count)) << "a node behind the last one";
+  return tree;
+}
+
+template <class Element>
+std::size_t first_difference(const std::vector<Element>& a, const std::vector<Element>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::memcmp(&a[i], &b[i], sizeof a[i]) != 0) return i;
+  }
+  return a.size();
+}
+
+void expect_same(const Built& cores, const Built& one) {
+  ASSERT_EQ(cores.status, one.status) << cores.words;
+  if (one.status != Status::kOk) return;
+  ASSERT_EQ(cores.size.triangle_count, one.size.triangle_count);
+  ASSERT_EQ(cores.size.node_count, one.size.node_count);
+  EXPECT_EQ(std::memcmp(&cores.size, &one.size, sizeof one.size), 0);
+  EXPECT_EQ(first_difference(cores.records, one.records), one.records.size());
+  EXPECT_EQ(first_difference(cores.nodes, one.nodes), one.nodes.size());
+}
+
+// Any of the ways.
+template <class Layout>
+void expect_same_any_way(const TestMesh& mesh, std::uint32_t leaf_triangles = 8) {
+  const Built one = built_by_one(mesh, leaf_triangles, TreeOrder::kForAnyHit);
+  const Way ways[] = {{.cores = 1, .completion = Completion::kLate},
+                      {.cores = 3, .completion = Completion::kRandom, .seed = 5},
+                      {.cores = 16, .completion = Completion::kRandom, .seed = 6, .queue_depth = 1},
+                      {.mode = sim::Mode::kPlain, .backwards = true}};
+  for (const Way& way : ways) {
+    SCOPED_TRACE(testing::Message() << "leaf " << leaf_triangles << " cores " << way.cores << " queue "
+                                    << way.queue_depth << " bytes " << Layout::kArenaBytes);
+    expect_same(built_by_cores<Layout>(mesh, leaf_triangles, TreeOrder::kForAnyHit, way), one);
+  }
+  expect_same(built_by_cores<Layout>(mesh, leaf_triangles, TreeOrder::kByNumber, {.mode = sim::Mode::kPlain}),
+              built_by_one(mesh, leaf_triangles, TreeOrder::kByNumber));
+}
+
+template <class Layout>
+class TreeBuild : public testing::Test {};
+using Layouts = testing::Types<BuildLayout256K, BuildLayout64K>;
+TYPED_TEST_SUITE(TreeBuild, Layouts);
+
+TestMesh flat(std::uint32_t count) {
+  TestMesh mesh;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto x = static_cast<float>(i);
+    mesh.append(make_triangle({0, 0, 0}, {x, 0, 0}, {2 * x, 0, 0}));
+  }
+  return mesh;
+}
+TestMesh equal_triangles(std::uint32_t count) {
+  TestMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles.assign(count, UVec3(0, 1, 2));
+  return mesh;
+}
+
+TYPED_TEST(TreeBuild, IsThatOfOneCore) {
+  expect_same_any_way<TypeParam>(make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+  expect_same_any_way<TypeParam>(make_torus(50, 60, 3, 1), 7);
+  expect_same_any_way<TypeParam>(make_random_soup(5000, 1.0f, 4), 16);
+  expect_same_any_way<TypeParam>(make_height_field(40, 0.2f, 3), 1);
+}
+
+TYPED_TEST(TreeBuild, OfTrianglesInAnyOrder) {
+  TestMesh mesh = make_height_field(60, 0.2f, 9);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    std::swap(mesh.triangles[i], mesh.triangles[i * 7919 % mesh.triangles.size()]);
+  }
+  expect_same_any_way<TypeParam>(mesh);
+}
+
+TYPED_TEST(TreeBuild, OfZerosOfBothSigns) {
+  TestMesh mesh = make_height_field(40, 0.2f, 9);
+  for (Vec3& vertex : mesh.vertices) vertex.y = vertex.y > 0 ? -0.0f : 0.0f;
+  expect_same_any_way<TypeParam>(mesh);
+}
+
+TYPED_TEST(TreeBuild, OfNothingThatHasAnArea) {
+  expect_same_any_way<TypeParam>(TestMesh{});
+  expect_same_any_way<TypeParam>(flat(1));
+  expect_same_any_way<TypeParam>(flat(3000));
+}
+
+TYPED_TEST(TreeBuild, RejectsBadMeshes) {
+  const TestMesh good = make_sphere(20, 30, 1);
+  TestMesh no_number = good, far_away = good, bad_index = good, last_index = good;
+  no_number.vertices[17].y = std::numeric_limits<float>::quiet_NaN();
+  far_away.vertices.back().z = -0x1p121f;
+  bad_index.triangles[500].z = static_cast<std::uint32_t>(good.vertices.size());
+  last_index.triangles.back().x = ~0u;
+  TestMesh both = last_index;
+  both.vertices[0].x = std::numeric_limits<float>::infinity();
+  for (const TestMesh& mesh : {no_number, far_away, bad_index, last_index, both}) expect_same_any_way<TypeParam>(mesh);
+  EXPECT_EQ(built_by_cores<TypeParam>(both, 8, {}, {}).status, Status::kBadVertex);
+  EXPECT_EQ(built_by_cores<TypeParam>(last_index, 8, {}, {}).status, Status::kBadIndex);
+  EXPECT_EQ(built_by_cores<TypeParam>(good, 0, {}, {}).status, Status::kBadParameter);
+  EXPECT_EQ(built_by_cores<TypeParam>(good, kMaxTreeLeaf + 1, {}, {}).status, Status::kBadParameter);
+}
+
+TYPED_TEST(TreeBuild, RejectsTooLittleMemory) {
+  const TestMesh mesh = make_sphere(20, 30, 1);
+  const Built one = built_by_one(mesh, 8, TreeOrder::kForAnyHit);
+  const auto with_room = [&](std::uint32_t records, std::uint32_t nodes) {
+    Way way;
+    way.record_room = records;
+    way.node_room = nodes;
+    return built_by_cores<TypeParam>(mesh, 8, TreeOrder::kForAnyHit, way);
+  };
+  expect_same(with_room(one.size.triangle_count, one.size.node_count), one);
+  EXPECT_EQ(with_room(one.size.triangle_count - 1, one.size.node_count).status, Status::kMemoryTooSmall);
+  EXPECT_EQ(with_room(one.size.triangle_count, one.size.node_count - 1).status, Status::kMemoryTooSmall);
+}
+
+// One code of more triangles than a store holds: they are gone through several times.
+TYPED_TEST(TreeBuild, OfCrowds) {
+  expect_same_any_way<TypeParam>(equal_triangles(3000), 16);
+  const std::uint32_t many = TypeParam::kBucketKeys * 2 + 77;
+  expect_same_any_way<TypeParam>(equal_triangles(many), 4);
+  const TestMesh crowd = moved(make_random_soup(many, 0.001f, 3), 1e-5f);
+  const TestMesh far = make_triangle({1e6f, 1e6f, 1e6f}, {1e6f, 1e6f, 1e6f + 8}, {1e6f, 1e6f + 8, 1e6f});
+  expect_same_any_way<TypeParam>(joined(crowd, far), 2);
+  const TestMesh twin = moved(crowd, 1, Vec3(1e6f, 0, 0));
+  expect_same_any_way<TypeParam>(joined(crowd, twin), 8);
+}
+
+// So many levels that triangles are split by their number, also in the middle of a crowd.
+TYPED_TEST(TreeBuild, OfDeepTrees) {
+  TestMesh nested;
+  float scale = 1;
+  for (std::uint64_t i = 0; i < 14; ++i, scale *= 2000) {
+    nested.append(moved(make_random_soup(i == 0 ? TypeParam::kBucketKeys + 900 : 40, 0.3f, i), scale));
+  }
+  for (const std::uint32_t leaf : {1u, 16u}) expect_same_any_way<TypeParam>(nested, leaf);
+  TestMesh geometric = moved(make_random_soup(3000, 1e-8f, 5), 1e-6f);
+  for (int i = 0; i < 110; ++i) {
+    const float size = std::ldexp(1.0f, i);
+    geometric.append(moved(make_triangle({0, 0, 0}, {.3f, 0, 0}, {0, .3f, 0}), size, Vec3(size)));
+  }
+  for (const std::uint32_t leaf : {1u, 2u}) expect_same_any_way<TypeParam>(geometric, leaf);
+}
+
+// The transfers of an item do not depend on what the core did before.
+TYPED_TEST(TreeBuild, HasTheSameTraceOnAnyNumberOfCores) {
+  const TestMesh mesh = joined(make_height_field(60, 0.2f, 9), moved(equal_triangles(500), 0.001f));
+  const Built first = built_by_cores<TypeParam>(mesh, 8, TreeOrder::kForAnyHit, {.cores = 1});
+  const Built second = built_by_cores<TypeParam>(mesh, 8, TreeOrder::kForAnyHit, {.cores = 7});
+  ASSERT_EQ(first.status, Status::kOk) << first.words;
+  ASSERT_EQ(second.status, Status::kOk) << second.words;
+  for (std::size_t pass = 0; pass < kBuildPassCount; ++pass) {
+    const auto& tiles = first.traces[pass].tiles;
+    ASSERT_EQ(tiles.size(), second.traces[pass].tiles.size());
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      EXPECT_EQ(tiles[i].packed, second.traces[pass].tiles[i].packed) << "pass " << pass << " item " << i;
+    }
+  }
+}
+
+TEST(TreeBuildFiles, AreThoseOfOneCore) {
+  for (const char* name : {"teapot.ply", "needles.ply"}) {
+    const std::optional<TestMesh> mesh = load_ply(std::filesystem::path(GRIDIRON_SCENE_FILES) / name);
+    ASSERT_TRUE(mesh) << name;
+    expect_same_any_way<BuildLayout256K>(*mesh);
+    expect_same_any_way<BuildLayout64K>(*mesh);
+  }
+}
+
+}  // namespace
+}  // namespace gridiron::test
