@@ -144,8 +144,8 @@ TEST(PassTiming, BytesAndTransfersOfAPass) {
   EXPECT_EQ(pass.bytes_out, 2u * 128);
   EXPECT_EQ(limit_of(pass, PassLimit::kChannel), 2 * 3 * 16);
   // An item: a command, two lines and a latency, the end of the wait, work, a command. The first line of the second one
-  // finds the channel taken by the put before it: for 16 cycles, of which claim and command take 13. Behind the last put
-  // comes a refused claim.
+  // finds the channel taken by the put before it: for 16 cycles, of which claim and command take 13. A refused claim
+  // follows the last put.
   const double item = 3 + 2 * 16 + 100 + 2 + 50 + 3;
   EXPECT_EQ(limit_of(pass, PassLimit::kOneItem), item + 3);
   EXPECT_EQ(pass.run.frame_cycles, 2 * (10 + item) + 3 + 16 + 100 + 2);

@@ -125,8 +125,9 @@ TEST(Passes, ACountOfItemsIsReadWhenThePassBeforeHasEnded) {
     }
     bench.clear_results();
     const MainAddress outside = MainAddress{bench.memory().used_bytes() + 4096};
-    for (const auto& [things, items] : {std::pair(193u, ItemCount{3, head, 64}), std::pair(~0u, ItemCount{3, head, 1}),
-                                        std::pair(1u, ItemCount{3, head, 0}), std::pair(1u, ItemCount{3, outside, 1})}) {
+    using Case = std::pair<std::uint32_t, ItemCount>;
+    for (const auto& [things, items] : {Case{193, {3, head, 64}}, Case{~0u, {3, head, 1}}, Case{1, {3, head, 0}},
+                                        Case{1, {3, outside, 1}}}) {
       const PassesResult wrong = run(things, items);
       EXPECT_EQ(wrong.status, Status::kBadParameter) << things;
       ASSERT_EQ(wrong.passes.size(), 1u);

@@ -77,9 +77,9 @@ struct ItemClaim {
 ///       not succeed; all transfers of the mask have ended even then.
 /// claim_item   next item of the pass, or why there is none. Each item is handed out exactly once per pass.
 ///
-/// A frame is a list of passes. A pass is one kernel and a number of items that cores claim; it begins when all items of
-/// the pass before it are done and their puts have ended, which the platform sees to. Rendering is one pass whose items
-/// are the tiles of the picture, row-major, 0 = top left.
+/// A frame is a list of passes. A pass is one kernel and a number of items that cores claim; it begins when all items
+/// of the pass before it are done and their puts have ended, which the platform sees to. Rendering is one pass whose
+/// items are the tiles of the picture, row-major, 0 = top left.
 ///
 /// Rules: a size of 0 is an error (kTransferSize); a transfer that a limit forbids is an error and starts nothing;
 /// several transfers may share a tag; there is no order between transfers but through wait; two pending transfers

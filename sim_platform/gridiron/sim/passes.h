@@ -28,20 +28,24 @@ struct ItemCount {
   std::uint32_t per_item = 1;  ///< with an address: things an item, the last of which may have fewer; at least 1
 };
 
-/// The code of a pass: `kernel(core, data)` for SimCore and PlainCore, which claims items until there are none and has
-/// waited for its transfers when it returns kOk. `data` is the core's local store, zeroed and kLineBytes-aligned:
-/// nothing is left there from the pass before. What it does before its first claim and after its last item must be the
-/// same on each core. A kernel holds references to what it needs; it is called on several threads at once.
+/// What can be the code of a pass: `kernel(core, data)` -> Status for SimCore and PlainCore.
+template <class Kernel>
+concept PassCode = std::invocable<Kernel&, SimCore&, std::span<std::byte>> &&
+    std::invocable<Kernel&, PlainCore&, std::span<std::byte>>;
+
+/// The code of a pass. It claims items until there are none and has waited for its transfers when it returns kOk.
+/// `data` is the core's local store, zeroed and kLineBytes-aligned: nothing is left there from the pass before. What it
+/// does before its first claim and after its last item must be the same on each core. A kernel holds references to what
+/// it needs; it is called on several threads at once.
 class PassKernel {
  public:
-  template <class Kernel>
-  requires std::invocable<Kernel&, SimCore&, std::span<std::byte>> &&
-      std::invocable<Kernel&, PlainCore&, std::span<std::byte>> &&
-      (!std::same_as<Kernel, PassKernel>)PassKernel(Kernel kernel)
-      : checked_(kernel), plain_(std::move(kernel)) {}  // NOLINT: kernels are passed as they are
+  /// Takes a generic lambda, or the like, for both.
+  template <PassCode Kernel>
+  PassKernel(Kernel kernel)  // NOLINT: kernels are passed as they are
+      : checked_(kernel), plain_(std::move(kernel)) {}
 
-  [[nodiscard]] const CoreProgram& checked() const { return checked_; }
-  [[nodiscard]] const PlainProgram& plain() const { return plain_; }
+  [[nodiscard]] const CoreProgram& checked() const { return checked_; }  ///< of Mode::kChecked
+  [[nodiscard]] const PlainProgram& plain() const { return plain_; }     ///< of Mode::kPlain
 
  private:
   CoreProgram checked_;
