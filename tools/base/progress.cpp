@@ -73,12 +73,17 @@ std::string words_of_seconds(double seconds) {
 Progress::Progress(bool wanted, const char* noun) : drawing_(wanted && ::isatty(STDERR_FILENO) == 1), noun_(noun) {}
 
 Progress::~Progress() {
-  if (drawing_ && drawn_percent_ != ~0ull) std::fputs("\r\033[K", stderr);
+  wipe();
 }
 
-void Progress::update(std::uint64_t done, std::uint64_t total) {
+void Progress::wipe() {
+  if (drawing_ && drawn_percent_ != ~0ull) std::fputs("\r\033[K", stderr);
+  drawn_percent_ = ~0ull;
+}
+
+void Progress::update(std::uint64_t done, std::uint64_t total, double part) {
   if (!drawing_ || total == 0) return;
-  const double share = static_cast<double>(done) / static_cast<double>(total);
+  const double share = (static_cast<double>(done) + part) / static_cast<double>(total);
   const double seconds = stopwatch_.seconds();
   left_.update(seconds, share);
   const auto percent = static_cast<std::uint64_t>(100 * share);

@@ -41,7 +41,11 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void update(std::uint64_t done, std::uint64_t total);
+  /// @param part  of the next item, 0..1.
+  void update(std::uint64_t done, std::uint64_t total, double part = 0);
+
+  /// Wipes the line for other text; the next update draws it again.
+  void wipe();
 
  private:
   bool drawing_;

@@ -115,7 +115,7 @@ void AtomicFile::write_through() {
   finish();
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(bool is_counted) {
   if (target_.is_special) {
     write_through();
     return;
@@ -125,7 +125,7 @@ void AtomicFile::commit() {
   if (::rename(temporary_.c_str(), target_.file.c_str()) != 0) fail("rename into place: ");
   temporary_.clear();
   leftover_.forget();
-  count_written_file();
+  if (is_counted) count_written_file();
 }
 
 void AtomicFile::fail(const char* action) {
@@ -133,7 +133,7 @@ void AtomicFile::fail(const char* action) {
   input_error(target_.name, std::string("cannot write: ") + action + reason);
 }
 
-AtomicFile& AtomicFiles::open(const fs::path& path) {
+AtomicFile& AtomicFiles::begin(const fs::path& path) {
   stop_if_interrupted();
   return files_.emplace_back(path);
 }

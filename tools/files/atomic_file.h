@@ -31,11 +31,15 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
+  /// Of the temporary file, for another program that writes it; -1 for a device or pipe.
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
   /// Closes the temporary file. Nothing is written after that.
   void finish();
 
   /// Finishes and makes the file appear under its name.
-  void commit();
+  /// @param is_counted  among the written files that a failure's last line tells of.
+  void commit(bool is_counted = true);
 
   [[nodiscard]] const OutputTarget& target() const { return target_; }
 
@@ -58,10 +62,13 @@ class AtomicFiles {
   /// @param content  bytes or text. Errors: of AtomicFile, and stop_if_interrupted()'s.
   template <class Content>
   void add(const std::filesystem::path& path, const Content& content) {
-    AtomicFile& file = open(path);
+    AtomicFile& file = begin(path);
     file.write(content);
     file.finish();
   }
+
+  /// Adds a file whose content the caller writes before commit(). The same errors.
+  AtomicFile& begin(const std::filesystem::path& path);
 
   /// Makes all files appear, devices and pipes first, because they may fail and a rename no longer does. No file
   /// appears if one of the targets can no longer be replaced. Errors: of check_again() too.
@@ -70,8 +77,6 @@ class AtomicFiles {
   void commit_at_end();
 
  private:
-  AtomicFile& open(const std::filesystem::path& path);
-
   std::list<AtomicFile> files_;
 };
 

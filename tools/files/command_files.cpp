@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -17,6 +18,8 @@ namespace gridiron::tool {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kFilmEndings[] = {".mp4", ".webm", ".gif"};
 
 // Files by identity, with the names that messages use.
 struct Ledger {
@@ -44,6 +47,12 @@ std::string words_of_output(const Output& output) {
 }
 
 void check_ending(const Output& output, const OutputTarget& target) {
+  if (output.kind == OutputKind::kFilm) {
+    if (target.is_special) usage_error(words_of_output(output) + ": a film can only be a file");
+    if (std::ranges::none_of(kFilmEndings, [&](const char* ending) { return has_ending(output.path, ending); })) {
+      usage_error(words_of_output(output) + ": the name of a film must end in .mp4, .webm or .gif");
+    }
+  }
   if (target.is_special) return;  // a device has no ending
   const bool is_pfm = has_ending(output.path, ".pfm");
   if (output.kind == OutputKind::kPicture && !is_pfm && !has_ending(output.path, ".png")) {

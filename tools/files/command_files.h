@@ -15,6 +15,7 @@ namespace gridiron::tool {
 enum class OutputKind {
   kPicture,  ///< .png or .pfm
   kFloats,   ///< .pfm
+  kFilm,     ///< .mp4, .webm or .gif, a file
   kBinary,
   kText,
 };

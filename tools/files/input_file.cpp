@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/content_hash.h"
 #include "command_files.h"
 #include "file_kind.h"
 #include "interrupt.h"
@@ -24,6 +25,8 @@ namespace {
 constexpr std::array<std::string_view, 4> kFetchedScans = {"bunny.ply", "horse.ply", "armadillo.ply", "dragon.ply"};
 constexpr std::array<std::string_view, 5> kOtherScans = {"conference.ply", "sponza_dabrovic.ply", "cornell_box.ply",
                                                          "armadillo_standin_345944.ply", "stanford_dragon_res2.ply"};
+
+InputHash* input_hash = nullptr;
 
 // Standard input by its usual names.
 bool is_standard_input(const std::filesystem::path& path) {
@@ -109,7 +112,12 @@ std::size_t InputReader::read_some(std::span<std::byte> target) const {
 
 InputFile InputReader::read_all(std::size_t most_bytes) {
   if (file_bytes_ && *file_bytes_ > most_bytes) fail(path_, EFBIG);
-  return name_in_shortage(path_, "read it", [&] { return read_rest(most_bytes); });
+  InputFile file = name_in_shortage(path_, "read it", [&] { return read_rest(most_bytes); });
+  if (input_hash != nullptr) {
+    const std::uint64_t values[] = {input_hash->value_, content_hash(file.bytes)};
+    input_hash->value_ = content_hash(std::as_bytes(std::span(values)));
+  }
+  return file;
 }
 
 InputFile InputReader::read_rest(std::size_t most_bytes) const {
@@ -138,6 +146,14 @@ InputFile InputReader::read_rest(std::size_t most_bytes) const {
 
 void InputReader::refuse_content() const {
   input_error(path_, words_of_content(head_, file_bytes_) + "; " + expected_);
+}
+
+InputHash::InputHash() {
+  input_hash = this;
+}
+
+InputHash::~InputHash() {
+  input_hash = nullptr;
 }
 
 InputFile read_input_file(const std::filesystem::path& path, const std::string& expected, std::size_t most_bytes) {

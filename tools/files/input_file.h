@@ -71,6 +71,23 @@ class InputReader {
   std::vector<std::byte> head_;
 };
 
+/// While one exists, the bytes of all inputs that are read to their end are combined into one number, by which another
+/// command can see whether they have changed.
+class InputHash {
+ public:
+  InputHash();
+  ~InputHash();
+  InputHash(const InputHash&) = delete;
+  InputHash& operator=(const InputHash&) = delete;
+
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  friend class InputReader;
+
+  std::uint64_t value_ = 0;
+};
+
 [[nodiscard]] InputFile read_input_file(const std::filesystem::path& path, const std::string& expected,
                                         std::size_t most_bytes = kAnySize);
 

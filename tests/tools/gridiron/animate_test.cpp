@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "animation_table.h"
 #include "gridiron/scene/scene_points.h"
 #include "gridiron/scene/view.h"
 #include "run_program.h"
@@ -13,30 +14,6 @@ namespace gridiron::test {
 namespace {
 
 using Json = nlohmann::json;
-using Row = std::map<std::string, std::string>;
-
-std::vector<Row> read_table(const std::filesystem::path& path) {
-  std::istringstream text(read_file(path));
-  const auto fields = [](const std::string& line) {
-    std::vector<std::string> parts;
-    std::istringstream stream(line);
-    for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-    return parts;
-  };
-  std::string line;
-  std::getline(text, line);
-  const std::vector<std::string> names = fields(line);
-  std::vector<Row> rows;
-  while (std::getline(text, line)) {
-    const std::vector<std::string> values = fields(line);
-    EXPECT_EQ(values.size(), names.size()) << line;
-    Row row;
-    for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i) row[names[i]] = values[i];
-    rows.push_back(row);
-  }
-  return rows;
-}
-
 ProgramResult animate(const TemporaryFolder& folder, const Words& arguments) {
   return run(folder, Words{"animate"} + arguments);
 }
@@ -129,6 +106,55 @@ TEST(Animate, BuildsThroughTheTreeAreNotCounted) {
   EXPECT_EQ(read_table(folder.path("out/animation.csv")).at(0).at("hash"), row.at("hash"));
 }
 
+constexpr const char* kSphere = "l 3 5 4\nf 0.9 0.5 0.3 0.7 0.3 40 0 0\ns 0 0 0 1\n";
+
+std::string view_line(const char* eye, const char* size) {
+  return std::string("v from ") + eye + " at 0 0 0 up 0 1 0 angle 30 hither 0 resolution " + size + "\n";
+}
+
+std::string hash_of_render(const TemporaryFolder& folder, const Words& arguments) {
+  const std::string out = run(folder, Words{"render"} + arguments).out;
+  return out.substr(out.find("hash ") + 5, 16);
+}
+
+// Effects and size too.
+TEST(Animate, TextScenesHaveTheirOwnViews) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path("in"));
+  folder.write("in/a.nff", view_line("1 2 6", "40 24") + kSphere);
+  folder.write("in/b.nff", view_line("-1 2 6", "40 24") + kSphere);
+  EXPECT_EQ(animate(folder, {"in", "-o", "out"}).err, "");
+  const std::vector<Row> rows = read_table(folder.path("out/animation.csv"));
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].at("hash"), hash_of_render(folder, {"in/a.nff"}));
+  EXPECT_EQ(rows[1].at("hash"), hash_of_render(folder, {"in/b.nff"}));
+  EXPECT_NE(rows[0].at("hash"), rows[1].at("hash"));
+  EXPECT_EQ(rows[0].at("build_cycles"), "");
+  (void)animate(folder, {"in", "-o", "out", "--eye", "0,3,5", "--tolerance", "0.1"});
+  const Row seen = read_table(folder.path("out/animation.csv")).at(0);
+  EXPECT_EQ(seen.at("hash"), hash_of_render(folder, {"in/a.nff", "--eye", "0,3,5", "--tolerance", "0.1"}));
+  // The tree of effects is not counted, so a build of the grid alone would be too little.
+  (void)animate(folder, {"in", "-o", "out", "--configuration", "grid"});
+  EXPECT_EQ(read_table(folder.path("out/animation.csv")).at(0).at("build_cycles"), "");
+
+  folder.write("in/b.nff", view_line("-1 2 6", "40 30") + kSphere);
+  expect_failure(folder, {"animate", "in", "-o", "new"}, 1,
+                 "in/b.nff: its picture has 40x30 pixels, those of other frames have 40x24; --size gives all frames");
+  (void)animate(folder, {"in", "-o", "out", "--size", "16x16"});
+}
+
+TEST(Animate, ScenesWithoutViewsAreFramedTogether) {
+  const TemporaryFolder folder("ball.ply", make_sphere(10, 14, 1.0f));
+  folder.write("a.nff", "f 1 1 1 1 0 0 0 0\nm ball.ply\n");
+  folder.write_ply("b.ply", moved(make_sphere(10, 14, 1.0f), 1.0f, Vec3(4, 0, 0)));
+  const Words options = {"--size", "48x32", "--shading", "simple"};
+  (void)animate(folder, Words{"ball.ply", "b.ply", "-o", "meshes"} + options);
+  (void)animate(folder, Words{"a.nff", "b.ply", "-o", "mixed"} + options);
+  const std::vector<Row> meshes = read_table(folder.path("meshes/animation.csv"));
+  const std::vector<Row> mixed = read_table(folder.path("mixed/animation.csv"));
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(meshes.at(i).at("hash"), mixed.at(i).at("hash")) << i;
+}
+
 TEST(Animate, SaysWhichFrameShowsNothing) {
   const TemporaryFolder folder("a.ply", make_sphere(10, 14, 1.0f));
   folder.write_ply("b.ply", moved(make_sphere(10, 14, 1.0f), 1.0f, Vec3(0, 0, 40)));
@@ -168,21 +194,22 @@ TEST(Animate, WhatCannotBeDoneIsTold) {
   folder.write("a.png", "\x89PNG\r\n\x1a\n");
   std::filesystem::create_directories(folder.path("nested/b.ply"));
   std::filesystem::create_symlink("nowhere", folder.folder() / "link");
+  const std::string takes = "; animate takes PLY meshes, text scenes (NFF), and folders of either\n";
   const struct {
     Words arguments;
     int exit_code;
-    const char* words;
+    std::string words;
   } cases[] = {
       {{"nowhere.ply", "-o", "out"}, 1, "nowhere.ply: No such file"},
-      {{"empty", "-o", "out"}, 1, "empty: holds no file that ends with .ply"},
-      {{"a.nff", "-o", "out"}, 1, "a.nff: is a text scene; animate takes PLY meshes"},
+      {{"empty", "-o", "out"}, 1, "empty: holds no file that ends with .ply or .nff\n"},
+      {{".", "-o", "out"}, 1, ".: holds files that end with .ply and with .nff; name the ones that are frames\n"},
       {{"a.ply", "twin", "-o", "out"}, 2, "two frames would be called a.png"},
       {{"a.ply", "bad.ply", "-o", "out"}, 1, "bad.ply:3: "},
       {{"a.ply", "-o", "no/where"}, 1, "no/where: cannot make the folder: No such file"},
       {{"a.ply", "-o", "a.nff"}, 1, "a.nff: cannot make the folder: a file of that name is there\n"},
       {{"a.ply", "-o", "link"}, 1, "link: cannot make the folder: it is a link to 'nowhere', which is not there\n"},
-      {{"a.png", "-o", "out"}, 1, "a.png: is a PNG picture; animate takes PLY meshes and folders of .ply files\n"},
-      {{"nested", "-o", "out"}, 1, "nested/b.ply: is a folder; animate takes PLY meshes and folders of .ply files\n"},
+      {{"a.png", "-o", "out"}, 1, "a.png: is a PNG picture" + takes},
+      {{"nested", "-o", "out"}, 1, "nested/b.ply: is a folder" + takes},
   };
   for (const auto& bad : cases) expect_failure(folder, Words{"animate"} + bad.arguments, bad.exit_code, bad.words);
 }

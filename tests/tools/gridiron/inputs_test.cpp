@@ -96,10 +96,14 @@ TEST_F(Inputs, AnimationsReadPipesOnce) {
   const std::string options = " --size 24x16 --quiet";
   expect_done("animate mesh b.ply -o files" + options);
   expect_done("animate - <(cat b.ply) -o pipes" + options + " < <(cat mesh)");
-  EXPECT_EQ(bytes_of("pipes/frame0.png"), bytes_of("files/mesh.png"));
-  EXPECT_EQ(bytes_of("pipes/frame1.png"), bytes_of("files/b.png"));
-  expect_failure("animate <(cat text) -o pipes", 1, "is a text scene; animate takes PLY meshes");
+  EXPECT_EQ(bytes_of("pipes/frame0000.png"), bytes_of("files/mesh.png"));
+  EXPECT_EQ(bytes_of("pipes/frame0001.png"), bytes_of("files/b.png"));
+  expect_done("animate text -o files" + options);
+  expect_done("animate <(cat text) -o pipes" + options);
+  EXPECT_EQ(bytes_of("pipes/frame0000.png"), bytes_of("files/text.png"));
+  expect_done("animate - --path <(printf 'frame 0\\neye 0 0 5\\nat 0 0 0\\n') -o pipes" + options + " < mesh");
   expect_failure("animate packed -o pipes", 1, "packed: is a packed scene; animate takes PLY meshes");
+  expect_failure("animate - --path - -o pipes < mesh", 2, "--path and FRAMES both read");
 }
 
 TEST_F(Inputs, WithoutANamePicturesAreCalledPicture) {

@@ -17,7 +17,7 @@ constexpr const char* kBall =
     "v from 1 2 6 at 0.1 0 0 up 0 1 0.1 angle 30 hither 0 resolution 40 24\n"
     "l 3 5 4\nf 0.9 0.5 0.3 0.7 0.3 40 0 0\ns 0 0 0 1\n";
 
-const std::filesystem::path kScenes = GRIDIRON_SCENE_FILES;
+const std::filesystem::path kSceneFolder = GRIDIRON_SCENE_FILES;
 
 // "40x24, hash 0123456789abcdef": size and pixels of the picture.
 std::string picture_of(const ProgramResult& result) {
@@ -97,7 +97,7 @@ TEST(TextScene, ToleranceMakesFinerBalls) {
 
 TEST(TextScene, InfoTellsWhatItCallsFor) {
   const TemporaryFolder folder;
-  const std::string everything = (kScenes / "everything.nff").string();
+  const std::string everything = (kSceneFolder / "everything.nff").string();
   const Json info = info_json(folder, {everything});
   const Json& effects = info["effects"];
   EXPECT_EQ(effects["called_for"].size(), kEffectCount);
@@ -124,7 +124,7 @@ TEST(TextScene, InfoTellsWhatItCallsFor) {
 
 TEST(TextScene, InfoNamesTheRenderer) {
   const TemporaryFolder folder;
-  const std::string mirror = (kScenes / "mirror.nff").string();
+  const std::string mirror = (kSceneFolder / "mirror.nff").string();
   EXPECT_EQ(info_json(folder, {mirror})["effects"]["renderer"], "EffectLayout256K<kSceneShading | kReflection, 0>");
   EXPECT_EQ(info_json(folder, with_reference({mirror}))["effects"]["renderer"],
             "EffectLayout256K<kSceneShading | kReflection, 8>");
@@ -135,7 +135,7 @@ TEST(TextScene, InfoNamesTheRenderer) {
             "EffectLayout64K<kSceneShading | kReflection>");
   EXPECT_EQ(info_json(folder, {mirror, "--store", "64"})["effects"]["has_room"], true);
   EXPECT_EQ(info_json(folder, {mirror, "--store", "128"})["effects"]["has_room"], false);
-  const std::string text = run(folder, {"info", (kScenes / "shadow.nff").string()}).out;
+  const std::string text = run(folder, {"info", (kSceneFolder / "shadow.nff").string()}).out;
   EXPECT_NE(text.find("scene_shading, point_shadows\n"), std::string::npos) << text;
   EXPECT_NE(text.find("EffectLayout256K<kSceneShading | kPointShadows, 0>"), std::string::npos) << text;
 
@@ -285,7 +285,7 @@ TEST(TextScene, NoOutputTakesThePlaceOfItsFiles) {
 
 TEST(TextScene, EveryEffectAtOnce) {
   const TemporaryFolder folder;
-  const std::string everything = (kScenes / "everything.nff").string();
+  const std::string everything = (kSceneFolder / "everything.nff").string();
   const Words small = {"--size", "48x48", "-o", "a.png"};
   const auto picture = [&](Words more) {
     more.insert(more.begin(), {"render", everything});

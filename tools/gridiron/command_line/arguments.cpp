@@ -194,7 +194,8 @@ struct NamedCommand {
 
 constexpr NamedCommand kCommands[] = {
     {"render", "renders a scene and reports what the frame costs on the chip", add_render},
-    {"animate", "renders a mesh a frame, each with a new tree or grid, and reports what the frames cost", add_animate},
+    {"animate", "renders a frame for each mesh or scene, or for each view of a moving camera; reports what they cost",
+     add_animate},
     {"info", "prints the contents and needs of a scene", add_info},
     {"pack", "makes a scene image (.gri) that render and firmware read as it is", add_pack},
     {"job", "makes the file of a frame that a device is given", add_job},

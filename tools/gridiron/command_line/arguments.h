@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -14,12 +15,21 @@
 
 namespace gridiron::tool {
 
-/// Frames of an animation: one for each mesh, with a new grid each.
+/// Frames of an animation: one for each mesh or scene, or one for each view of a camera that moves.
 struct AnimateRequest {
   RenderRequest render;                       ///< of every frame; its input is the frame's
-  std::vector<std::filesystem::path> inputs;  ///< meshes, and folders of them
+  std::vector<std::filesystem::path> inputs;  ///< meshes, scenes, and folders of them
   std::filesystem::path output;               ///< folder, never empty
+  std::optional<std::filesystem::path> path;  ///< of the camera
+  std::optional<std::uint32_t> turntable;     ///< frames of a camera that goes around once
+  std::optional<std::filesystem::path> film;
+  std::optional<float> frames_per_second;        ///< of the film; nothing: kUsualFramesPerSecond
+  bool resume = false;                           ///< keeps the complete pictures of an earlier command
+  std::map<std::string, std::string> options{};  ///< as given, all but those on which no picture or figure depends
+
+  [[nodiscard]] bool has_moving_camera() const { return path || turntable; }
 };
+inline constexpr float kUsualFramesPerSecond = 24;
 
 struct PackRequest {
   SceneRequest scene;

@@ -41,6 +41,10 @@ void add_size(CLI::App& app, std::optional<CountPair>& size, const std::string& 
 void add_input(CLI::App& app, SceneRequest& scene) {
   add_input_file(app, "INPUT", scene.input,
                  "scene: a PLY mesh, a text scene (NFF) or a packed scene, under any name; - is standard input");
+  add_tolerance(app, scene);
+}
+
+void add_tolerance(CLI::App& app, SceneRequest& scene) {
   const auto tolerance = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
     return value && *value > 0 ? value : std::nullopt;

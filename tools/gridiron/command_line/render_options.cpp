@@ -1,10 +1,14 @@
 // Options of the commands that render: render, animate, job. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/firmware/frame_job.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
+#include <string_view>
 
 #include "base/failure.h"
 #include "files/input_file.h"
+#include "gridiron/scene/camera_path.h"
 #include "options.h"
 
 namespace gridiron::tool {
@@ -121,6 +125,37 @@ void complete_render(RenderRequest& render, const std::string& machine) {
   complete_scene(render.scene, machine, render.camera);
 }
 
+void complete_animation(AnimateRequest& animate, const std::string& machine) {
+  RenderRequest& render = animate.render;
+  if (animate.path && animate.turntable) usage_error("--path and --turntable: both move the camera");
+  if (animate.path && render.camera) usage_error("--path and --camera: both are views of the whole frame");
+  if (animate.path && render.view.from) usage_error("--path and --from: both say where the eye is");
+  if (animate.frames_per_second && !animate.film) usage_error("--fps: is of --film");
+  std::vector<NamedFile> inputs = {{"--camera", render.camera}, {"--path", animate.path}, machine_file(machine)};
+  for (std::filesystem::path& input : animate.inputs) {
+    if (input.empty()) usage_error("FRAMES: '' is not a file name");
+    input = input_path(input);
+    inputs.push_back({"FRAMES", input});
+  }
+  require_own_streams(inputs);
+  complete_render(render, machine);
+}
+
+// Options of which a picture or a figure depends, as given. Views and the machine are compared by their content.
+std::map<std::string, std::string> given_options(const CLI::App& app) {
+  constexpr std::string_view kOthers[] = {"FRAMES",   "--output", "--path", "--camera",  "--film",   "--fps",
+                                          "--resume", "--quiet",  "--help", "--machine", "--threads"};
+  std::map<std::string, std::string> options;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_single_name();
+    const std::string spelled = (option->get_positional() ? "" : "--") + name;
+    if (option->count() == 0 || std::ranges::find(kOthers, spelled) != std::end(kOthers)) continue;
+    std::string& value = options[spelled];
+    for (const std::string& word : option->results()) value += (value.empty() ? "" : " ") + word;
+  }
+  return options;
+}
+
 }  // namespace
 
 Finish add_render(CLI::App& app) {
@@ -144,29 +179,41 @@ Finish add_animate(CLI::App& app) {
   AnimateRequest& animate = asked->request;
   RenderRequest& render = animate.render;
   app.add_option("FRAMES", animate.inputs,
-                 "PLY meshes in the order of their frames; of a folder all .ply files, by name; - is standard input")
+                 "PLY meshes or text scenes in the order of their frames; of a folder all .ply files, or all .nff "
+                 "files, by name; one mesh, text scene or packed scene with --path or --turntable; - is standard input")
       ->required()
       ->type_name("");
   add_parsed(app, "-o,--output", animate.output, parse_path, "the name of a folder", "DIR",
              "folder of the pictures and animation.csv, made where it is not there")
       ->required();
+  add_parsed(
+      app, "--path", animate.path, [](const std::string& text) { return std::optional(input_path(text)); },
+      "a file name", "FILE",
+      "the camera moves smoothly through the key views of this file; --eye, --at, --up and --fov replace parts of all "
+      "views; - is standard input");
+  add_count(app, "--turntable", animate.turntable, 1, kMostFrames,
+            "the camera goes once around the up axis in so many frames");
+  add_output(app, "--film", animate.film, "film of all pictures, .mp4, .webm or .gif; needs ffmpeg");
+  const auto rate = [](const std::string& text) {
+    const std::optional<float> value = parse_float(text);
+    return value && *value >= 0.01f && *value <= 1000.0f ? value : std::nullopt;
+  };
+  add_parsed(app, "--fps", animate.frames_per_second, rate, "a number from 0.01 to 1000", "NUMBER",
+             "frames a second of the film (default 24)");
+  app.add_flag("--resume", animate.resume,
+               "keep the complete pictures of an earlier command with the same options and inputs");
+  add_tolerance(app, render.scene);
   add_grid_options(app, render.scene, asked->machine);
-  add_size(app, render.size, "pictures in pixels (default 1024x1024)");
+  add_size(app, render.size, "pictures in pixels (default: the text scenes' own, else 1024x1024)");
   add_view_options(app, render);
   add_cores(app, render.cores);
   add_threads(app, render.threads, "no result depends on it");
   add_store(app, render.layout.store);
   add_algorithm_options(app, render);
   add_quiet(app, render.scene.quiet);
-  return [asked] {
-    std::vector<NamedFile> inputs = {{"--camera", asked->request.render.camera}, machine_file(asked->machine)};
-    for (std::filesystem::path& input : asked->request.inputs) {
-      if (input.empty()) usage_error("FRAMES: '' is not a file name");
-      input = input_path(input);
-      inputs.push_back({"FRAMES", input});
-    }
-    require_own_streams(inputs);
-    complete_render(asked->request.render, asked->machine);
+  return [asked, &app] {
+    complete_animation(asked->request, asked->machine);
+    asked->request.options = given_options(app);
     return asked->request;
   };
 }

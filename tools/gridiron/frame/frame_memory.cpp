@@ -174,9 +174,9 @@ void prepare_frame(FrameMemory& frame, SceneInput&& input, const RenderPlan& pla
   prepare(frame, input, plan, view, packed != nullptr ? &packed->file : nullptr);
 }
 
-void aim_camera(FrameMemory& frame, const Camera& camera) {
+void aim_camera(FrameMemory& frame, const Camera& camera, const std::filesystem::path& source) {
   frame.settings.camera = camera;
-  make_record(frame, {});
+  make_record(frame, source);
   store_record(frame);
 }
 

@@ -46,7 +46,8 @@ void prepare_frame(FrameMemory& frame, const SceneInput& input, const RenderPlan
 /// The same. The bytes of a packed scene move into main memory, so that they exist once; the rest of `input` stays.
 void prepare_frame(FrameMemory& frame, SceneInput&& input, const RenderPlan& plan, const ViewRequest& view);
 
-/// Gives a prepared frame another camera. Errors: Failure (kUsage) if the frame cannot have it.
-void aim_camera(FrameMemory& frame, const Camera& camera);
+/// Gives a prepared frame another camera. @param source  the scene, for messages. Errors: Failure (kUsage) if the frame
+/// cannot have it.
+void aim_camera(FrameMemory& frame, const Camera& camera, const std::filesystem::path& source = {});
 
 }  // namespace gridiron::tool

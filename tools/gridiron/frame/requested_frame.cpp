@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "base/words.h"
 #include "gridiron/device/store_facts.h"
@@ -36,12 +37,13 @@ void check_scene_view(const RenderRequest& request, const RequestedFrame& frame)
   check_hither(input, complete_view(frame.view, aspect, no_points), plan.width, plan.height);
 }
 
-// Where `best` would be the default but has no bounds, `grid` is, if the scene has one.
-void take_grid_without_bounds(const RenderRequest& request, RequestedFrame& frame) {
+}  // namespace
+
+void take_grid_without_bounds(const RenderRequest& request, RequestedFrame& frame, std::span<const ViewRequest> views) {
   if (request.scene.configuration != nullptr || frame.plan.engine != EngineId::kTree) return;
   const PackedScene* const packed = std::get_if<PackedScene>(&frame.input.content);
   if (packed != nullptr && !packed->view.has_grid) return;
-  if (has_bounds(frame.input, frame.plan, frame.view)) return;
+  if (!find_view_without_bounds(frame.input, frame.plan, views)) return;
   KnownScene known = known_scene(frame.input);
   known.has_bounds = false;
   frame.plan = resolve(request, known, this_host());
@@ -52,7 +54,24 @@ void take_grid_without_bounds(const RenderRequest& request, RequestedFrame& fram
                request.scene.input.c_str());
 }
 
-}  // namespace
+void tell_frame_notes(const RenderRequest& request, const RequestedFrame& frame) {
+  if (request.scene.quiet) return;
+  tell_notes(frame.input);
+  tell_fewer_buffers(request, frame.plan);
+}
+
+RequestedFrame complete_frame(const RenderRequest& request, SceneInput input,
+                              const std::optional<ViewRequest>& camera) {
+  RequestedFrame frame;
+  frame.input = std::move(input);
+  frame.plan = resolve(request, known_scene(frame.input), this_host());
+  const PictureRequest picture =
+      complete_request({request.view, camera, request.size}, frame.input.text ? frame.input.text->view : SceneView{});
+  frame.view = join_view(picture.view, *picture.camera);
+  check_scene_view(request, frame);
+  take_grid_without_bounds(request, frame, std::span(&frame.view, 1));
+  return frame;
+}
 
 RequestedFrame read_requested_frame(const RenderRequest& request, const std::vector<Output>& outputs) {
   const KnownScene foreseen = foreseen_scene(request.scene);
@@ -60,17 +79,9 @@ RequestedFrame read_requested_frame(const RenderRequest& request, const std::vec
   declare_outputs(outputs);
   PictureRequest picture{request.view, std::nullopt, request.size};
   if (request.camera) picture.camera = read_camera_file(*request.camera);
-  RequestedFrame frame;
-  frame.input = read_scene_input(request.scene.input, request.scene.tolerance, picture);
-  frame.plan = resolve(request, known_scene(frame.input), this_host());
-  picture = complete_request(picture, frame.input.text ? frame.input.text->view : SceneView{});
-  frame.view = join_view(picture.view, *picture.camera);
-  check_scene_view(request, frame);
-  take_grid_without_bounds(request, frame);
-  if (!request.scene.quiet) {
-    tell_notes(frame.input);
-    tell_fewer_buffers(request, frame.plan);
-  }
+  RequestedFrame frame =
+      complete_frame(request, read_scene_input(request.scene.input, request.scene.tolerance, picture), picture.camera);
+  tell_frame_notes(request, frame);
   return frame;
 }
 

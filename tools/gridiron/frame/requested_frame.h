@@ -2,6 +2,8 @@
 // Memory: owns the scene. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "files/command_files.h"
@@ -24,5 +26,17 @@ struct RequestedFrame {
 /// @param outputs  of the command; they are declared first, so that an output that cannot be written is reported early.
 /// Errors: Failure.
 [[nodiscard]] RequestedFrame read_requested_frame(const RenderRequest& request, const std::vector<Output>& outputs);
+
+/// Completes the frame of a scene that was read; prints no notes of the scene. @param camera  that the request names.
+/// Errors: Failure.
+[[nodiscard]] RequestedFrame complete_frame(const RenderRequest& request, SceneInput input,
+                                            const std::optional<ViewRequest>& camera);
+
+/// Where `best` is the default but has no bounds in one of the views, the plan becomes that of `grid`, if the scene has
+/// one; a note says so unless quiet.
+void take_grid_without_bounds(const RenderRequest& request, RequestedFrame& frame, std::span<const ViewRequest> views);
+
+/// Prints the notes of read_requested_frame() on standard error, unless quiet.
+void tell_frame_notes(const RenderRequest& request, const RequestedFrame& frame);
 
 }  // namespace gridiron::tool

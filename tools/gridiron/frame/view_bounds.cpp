@@ -39,7 +39,8 @@ bool has_bounds(const FrameHead& frame, const TreeRecord& tree, const RenderPlan
   return has_bounds(frame, largest_of(tree), plan);
 }
 
-bool has_bounds(const SceneInput& input, const RenderPlan& plan, const ViewRequest& view) {
+std::optional<std::size_t> find_view_without_bounds(const SceneInput& input, const RenderPlan& plan,
+                                                    std::span<const ViewRequest> views) {
   const PackedScene* const packed = std::get_if<PackedScene>(&input.content);
   const Mesh* const mesh = std::get_if<Mesh>(&input.content);
   const float largest = packed != nullptr ? largest_of(packed->view.tree) : largest_of(*mesh);
@@ -52,15 +53,18 @@ bool has_bounds(const SceneInput& input, const RenderPlan& plan, const ViewReque
   };
   bool has_points = false;
   points([&](const auto&) { has_points = true; });
-  if (!has_points) return true;
+  if (!has_points) return std::nullopt;
   FrameSettings settings;
-  settings.camera = complete_view(view, static_cast<double>(plan.width) / plan.height, points);
   settings.width = plan.width;
   settings.height = plan.height;
   settings.tile_width = plan.layout.tile_width;
   settings.color = MainAddress{kLineBytes};
-  FrameHead frame{};
-  return make_frame_head(settings, frame) != Status::kOk || has_bounds(frame, largest, plan);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    settings.camera = complete_view(views[i], static_cast<double>(plan.width) / plan.height, points);
+    FrameHead frame{};
+    if (make_frame_head(settings, frame) == Status::kOk && !has_bounds(frame, largest, plan)) return i;
+  }
+  return std::nullopt;
 }
 
 }  // namespace gridiron::tool

@@ -2,16 +2,21 @@
 // Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <span>
+
 #include "gridiron/scene/scene_input.h"
 #include "render_plan.h"
 
 namespace gridiron::tool {
 
-/// @returns whether they have; true also of what no frame can be made of. @param plan  with EngineId::kTree.
-/// Errors: Failure (kUsage) if the view has a defect.
-[[nodiscard]] bool has_bounds(const SceneInput& input, const RenderPlan& plan, const ViewRequest& view);
+/// @returns the first of the views without bounds. What no frame can be made of counts as one with bounds.
+/// @param plan  with EngineId::kTree. Errors: Failure (kUsage) if a view has a defect.
+[[nodiscard]] std::optional<std::size_t> find_view_without_bounds(const SceneInput& input, const RenderPlan& plan,
+                                                                  std::span<const ViewRequest> views);
 
-/// The same of a frame of an image with a tree.
+/// @returns whether a frame of an image with a tree has bounds.
 [[nodiscard]] bool has_bounds(const FrameHead& frame, const TreeRecord& tree, const RenderPlan& plan);
 
 }  // namespace gridiron::tool

@@ -326,4 +326,30 @@ DVec3 middle_of(const PointSource& points) {
   return 0.5 * (least + most);
 }
 
+std::vector<Vec3> swept_points(const PointSource& points, const DVec3& place, const DVec3& axis) {
+  const Axes axes = axes_of({}, axis);
+  const DVec3 along = glm::normalize(axis);
+  Hull profile;  // radius and height; only its corners touch the solid's convex hull
+  points([&](std::span<const Vec3> some) {
+    for (const Vec3& point : some) {
+      const DVec3 offset = DVec3(point) - place;
+      const double height = glm::dot(along, offset);
+      profile.add({glm::length(offset - height * along), height});
+    }
+  });
+  // Each circle is replaced by the corners of a polygon around it.
+  constexpr int kCorners = 64;
+  constexpr double kTurn = 2 * std::numbers::pi / kCorners;
+  const DVec3 across = glm::cross(along, axes.right);
+  std::vector<Vec3> swept;
+  for (const DVec2& corner : profile.corners()) {
+    const double radius = corner.x / std::cos(0.5 * kTurn);
+    for (int i = 0; i < kCorners; ++i) {
+      const DVec3 outwards = std::cos(i * kTurn) * axes.right + std::sin(i * kTurn) * across;
+      swept.emplace_back(place + corner.y * along + radius * outwards);
+    }
+  }
+  return swept;
+}
+
 }  // namespace gridiron::tool

@@ -6,6 +6,7 @@
 #include <gridiron/frame/frame_setup.h>
 
 #include <optional>
+#include <vector>
 
 #include "base/points.h"
 
@@ -39,5 +40,10 @@ struct FramingRequest {
 
 /// @returns the middle of the points' bounds.
 [[nodiscard]] DVec3 middle_of(const PointSource& points);
+
+/// @returns points around the solid that the points sweep when they turn about an axis, at most 0.13 % of its radius
+/// away from it: a scene that is framed by them stays whole while it, or the camera, turns.
+/// @param place  a point of the axis. @param axis  of any length but 0.
+[[nodiscard]] std::vector<Vec3> swept_points(const PointSource& points, const DVec3& place, const DVec3& axis);
 
 }  // namespace gridiron::tool
