@@ -21,15 +21,15 @@ TEST(CameraPath, KeysTakeWhatTheyLeaveOutFromTheKeyBefore) {
   const TemporaryFolder folder;
   const CameraPath path =
       path_of(folder,
-              "# a flight\nframe 0  # begins here\neye 0 0 8\nat 0 1 0\r\n\nframe 10\ndirection 0 0 -2\n"
+              "# a flight\nframe 0  # begins here\neye 0 0 8\nat 0 0 3\r\n\nframe 10\ndirection 0 0 -2\n"
               "fov 30\nframe 12\neye 1 0 0\nup 0 2 1\n frame 13\n");
   ASSERT_EQ(path.keys.size(), 4u);
   EXPECT_EQ(path.frame_count(), 14u);
   EXPECT_EQ(path.keys[0].up, Vec3(0, 1, 0));
   EXPECT_EQ(path.keys[0].fov_degrees, 45.0f);
   EXPECT_EQ(path.keys[1].eye, Vec3(0, 0, 8));
-  EXPECT_EQ(path.keys[1].at, Vec3(0, 0, 6)) << "a direction is from the eye";
-  EXPECT_EQ(path.keys[2].at, Vec3(1, 0, -2)) << "and stays one";
+  EXPECT_EQ(path.keys[1].at, Vec3(0, 0, 3)) << "a direction is from the eye, as far as the last at";
+  EXPECT_EQ(path.keys[2].at, Vec3(1, 0, -5)) << "and stays one";
   EXPECT_EQ(path.keys[2].fov_degrees, 30.0f);
   EXPECT_EQ(path.keys[3].up, Vec3(0, 2, 1));
   EXPECT_EQ(path.keys[3].line, 12u);
@@ -52,6 +52,7 @@ TEST(CameraPath, ErrorsNameTheLine) {
       {"frame 0\neye 0 0 x\n", ":2: 'x' is not a finite number"},
       {"frame 0\neye 0 0 1\neye 0 0 2\n", ":3: second 'eye'"},
       {"frame 0\nat 0 0 1\ndirection 0 0 2\n", ":3: at and direction: both say where this key looks"},
+      {"frame 0\neye 0 0 1\ndirection 0 0 0\n", ":1: direction has length 0"},
       {"frame 0\nfov 180\n", ":2: fov must be from 0.001 to below 180 degrees"},
       {"frame 0\nzoom 2\n", ":2: unknown word 'zoom'; expected frame, eye, at, direction, up or fov"},
       {"frame 0\neye 0 0 1\nat 0 0 0\nframe 9\nat 0 0 1\n", ":4: eye and at are the same point"},
@@ -105,6 +106,15 @@ TEST(CameraPath, StandsStillBetweenEqualKeys) {
   const CameraPath path =
       path_of(folder, "frame 0\neye 0 0 8\nat 0 0 0\nframe 10\neye 4 0 8\nframe 20\nframe 30\neye 9 0 8\n");
   for (std::uint32_t frame = 10; frame <= 20; ++frame) EXPECT_EQ(tool::view_of_path(path, frame).eye, Vec3(4, 0, 8));
+}
+
+TEST(CameraPath, ADirectionLooksAsFarAsOtherKeys) {
+  const TemporaryFolder folder;
+  const CameraPath before = path_of(folder, "frame 0\neye 0 0 8\ndirection 0 0 -3\nframe 4\neye 0 0 9\nat 0 0 4\n");
+  EXPECT_EQ(before.keys[0].at, Vec3(0, 0, 3));
+  const CameraPath alone = path_of(folder, "frame 0\neye 0 0 8\ndirection 0 0 -3\nframe 4\ndirection 0.1 0 0\n");
+  EXPECT_EQ(alone.keys[0].at, Vec3(0, 0, 0));
+  EXPECT_EQ(alone.keys[1].at, Vec3(8, 0, 8));
 }
 
 TEST(CameraPath, PartsOfTheCommandLineReplaceAllOfIts) {

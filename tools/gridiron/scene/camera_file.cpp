@@ -1,5 +1,6 @@
 // Camera files and camera paths: the text forms of a view and of one that moves. SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -116,10 +117,26 @@ void add_part(KeyParts& key, const std::vector<std::string>& words, const Line& 
   if (key.at && key.direction) line.fail("at and direction: both say where this key looks");
 }
 
-// Parts that a key does not give are those of the key before.
+double distance(const Vec3& eye, const Vec3& at) {
+  return glm::length(DVec3(at) - DVec3(eye));
+}
+
+// How far from its eye a key with a direction looks, before any key has an `at`: as far as the first one that has.
+double first_distance(const std::vector<KeyParts>& keys) {
+  std::optional<Vec3> eye;
+  for (const KeyParts& key : keys) {
+    if (key.eye) eye = key.eye;
+    if (eye && key.at) return distance(*eye, *key.at);
+  }
+  return eye ? std::max(1.0, glm::length(DVec3(*eye))) : 1.0;
+}
+
+// Parts that a key does not give are those of the key before. Directions become points as far away as those of keys
+// with an `at`, so that the view turns evenly between the two.
 CameraPath complete_keys(const std::filesystem::path& path, const std::vector<KeyParts>& keys) {
   CameraPath result{path, {}};
   KeyParts now;
+  double reach = first_distance(keys);
   for (const KeyParts& key : keys) {
     now.line = key.line;
     now.frame = key.frame;
@@ -134,7 +151,9 @@ CameraPath complete_keys(const std::filesystem::path& path, const std::vector<Ke
     if (!now.at && !now.direction) {
       input_error(path, key.line, "the first key has no line 'at x y z' or 'direction x y z'");
     }
-    const Vec3 at = now.at ? *now.at : *now.eye + *now.direction;
+    if (now.direction == Vec3(0.0f)) input_error(path, key.line, "direction has length 0");
+    const Vec3 at = now.at ? *now.at : Vec3(DVec3(*now.eye) + reach * glm::normalize(DVec3(*now.direction)));
+    if (now.at) reach = distance(*now.eye, at);
     const Vec3 up = now.up.value_or(Vec3(0, 1, 0));
     if (const char* defect = view_defect(*now.eye, at, up)) input_error(path, key.line, defect);
     result.keys.push_back({now.frame, now.line, *now.eye, at, up, now.fov_degrees.value_or(kDefaultFovDegrees)});
