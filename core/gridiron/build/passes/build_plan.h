@@ -23,7 +23,7 @@ struct BuildLayout256K {
   static constexpr std::uint32_t kCodeBudgetBytes = 60 * 1024;  ///< of it for code
   static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;  ///< of it for the stack
   static constexpr std::uint32_t kRunTriangles = 2048;          ///< that one item codes and sorts
-  static constexpr std::uint32_t kCacheBlocks = 1024;           ///< blocks of eight vertices, a power of two
+  static constexpr std::uint32_t kCacheLines = 512;             ///< of vertices, a power of two
   static constexpr std::uint32_t kChunkTriangles = 32;          ///< whose corners are asked for at once
   static constexpr std::uint32_t kIndexWindow = 512;            ///< triangles
   static constexpr std::uint32_t kSamples = 8192;               ///< codes by which buckets are chosen, at most
@@ -41,7 +41,7 @@ struct BuildLayout64K {
   static constexpr std::uint32_t kCodeBudgetBytes = 24 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024;
   static constexpr std::uint32_t kRunTriangles = 1024;
-  static constexpr std::uint32_t kCacheBlocks = 64;
+  static constexpr std::uint32_t kCacheLines = 32;
   static constexpr std::uint32_t kChunkTriangles = 16;
   static constexpr std::uint32_t kIndexWindow = 32;
   static constexpr std::uint32_t kSamples = 1024;
@@ -159,7 +159,7 @@ static_assert(sizeof(TopState) == 128);
 
 inline constexpr std::uint32_t kVertexItem = 2048;    ///< vertices that one item bounds
 inline constexpr std::uint32_t kVertexWindow = 256;   ///< of them at once
-inline constexpr std::uint32_t kBlockVertices = 8;    ///< of a block of the cache
+inline constexpr std::uint32_t kMostVertices = 1u << 30;  ///< of a mesh
 inline constexpr std::uint32_t kMostRunSamples = 64;
 inline constexpr std::uint32_t kNoSample = ~0u;       ///< more than any code
 inline constexpr std::uint32_t kRunGroup = 8;         ///< runs whose cuts one item finds
@@ -197,6 +197,7 @@ struct BuildPlan {
 template <class Layout>
 [[nodiscard]] constexpr Status plan_build(const BuildInput& input, BuildPlan& plan) {
   if (input.leaf_triangles == 0 || input.leaf_triangles > kMaxTreeLeaf) return Status::kBadParameter;
+  if (input.vertex_count > kMostVertices) return Status::kBadParameter;
   if (input.triangle_count > kMaxTreeTriangles) return Status::kTooManyTriangles;
   const std::uint32_t n = input.triangle_count;
   const auto shares = [](std::uint64_t count, std::uint64_t share) {

@@ -114,14 +114,12 @@ template <class Layout, class P>
                                keys[next++].again = TreeKey::of(code | kTreeCodedAgain, id);
                                return Status::kOk;
                              }));
-  // An odd number of digits takes them to `key`.
   constexpr std::uint32_t kFew = Layout::kFewDigitBits, kMany = Layout::kDigitBits;
-  static_assert((kTreeCodeBits + kFew - 1) / kFew % 2 == 1 && (kTreeCodeBits + kMany - 1) / kMany % 2 == 1);
-  if (count <= kFewRunKeys) {
-    sort_run<kFew, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts);
-  } else {
-    sort_run<kMany, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts);
-  }
+  const bool is_in_key = count <= kFewRunKeys
+                             ? sort_run<kFew, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts)
+                             : sort_run<kMany, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts);
+  if (is_in_key) return Status::kOk;
+  for (std::uint32_t i = 0; i < count; ++i) keys[i].key = keys[i].again;
   return Status::kOk;
 }
 

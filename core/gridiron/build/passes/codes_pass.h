@@ -11,8 +11,8 @@
 
 namespace gridiron {
 
-inline constexpr std::uint32_t kBlockBytes = kBlockVertices * kVertexBytes;
-static_assert(kBlockBytes % kPortableCongruenceBytes == 0);
+// Words of a vertex and of a line.
+inline constexpr std::uint32_t kVertexWords = kVertexBytes / 4, kLineWords = kLineBytes / 4;
 
 template <class Layout>
 struct CodesStore {
@@ -20,7 +20,8 @@ struct CodesStore {
   static constexpr std::uint32_t kLoneBytes = window_bytes<Vec3>(1);
   static constexpr std::uint32_t kPartWindow = 16;
 
-  alignas(128) std::byte blocks[Layout::kCacheBlocks * kBlockBytes];  // of vertices
+  // Lines of vertices, each at its number modulo theirs, so that one that ends in the next line does so here too.
+  alignas(128) std::byte lines[Layout::kCacheLines * kLineBytes];
   std::byte lone[2][kCorners * kLoneBytes];                           // vertices that found no place there
   alignas(128) std::byte indices[2][window_bytes<UVec3>(Layout::kIndexWindow)];
   alignas(128) VertexTriangle records[4][Layout::kChunkTriangles];
@@ -29,9 +30,9 @@ struct CodesStore {
   alignas(128) std::uint32_t samples[kMostRunSamples];
   alignas(128) RunPart part;
   alignas(128) std::byte vertex_parts[2 * window_bytes<CornerBox>(kPartWindow)];
-  std::uint32_t blocks_held[Layout::kCacheBlocks];  // block + 1; 0: none
-  std::uint32_t block_users[Layout::kCacheBlocks];  // the last chunk that asked for it
-  std::uint32_t corners[2][kCorners];               // of a chunk's triangles: bytes from blocks on
+  std::uint32_t lines_held[Layout::kCacheLines];  // line + 1; 0: none
+  std::uint32_t line_users[Layout::kCacheLines];  // the last chunk that asked for it
+  std::uint32_t corners[2][kCorners];             // of a chunk's triangles: bytes from lines on
   std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
 };
 
@@ -51,7 +52,7 @@ class RunCoder {
     kept_ = 0;
     // What the run before has left is not used: transfers of an item depend on nothing but the item.
     clock_ = 2;
-    for (std::uint32_t i = 0; i < Layout::kCacheBlocks; ++i) store_.blocks_held[i] = store_.block_users[i] = 0;
+    for (std::uint32_t i = 0; i < Layout::kCacheLines; ++i) store_.lines_held[i] = store_.line_users[i] = 0;
     const auto chunk_count = [count](std::uint32_t chunk) {
       return count - chunk * kChunk < kChunk ? count - chunk * kChunk : kChunk;
     };
@@ -68,6 +69,7 @@ class RunCoder {
 
  private:
   static constexpr std::uint32_t kRun = Layout::kRunTriangles, kChunk = Layout::kChunkTriangles;
+  static constexpr std::uint32_t kLines = Layout::kCacheLines;
   static constexpr std::uint8_t kIndexTag = kFirstMacroTag, kCornerTag = kFirstTriangleTag;  // and the next
   static constexpr std::uint8_t kKeysTag = kFirstOutputTag + 4, kPartTag = kKeysTag + 1;     // records: four before
   static_assert(Layout::kIndexWindow % kChunk == 0 && kChunk % 4 == 0);
@@ -92,43 +94,58 @@ class RunCoder {
       GRIDIRON_TRY(get_indices(first, run_count, window + 1));
       GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kIndexTag + window % 2)));
     }
-    const UVec3* const triangles = index_window(first, window).elements() + begin % Layout::kIndexWindow;
+    const auto* const indices = reinterpret_cast<const std::uint32_t*>(index_window(first, window).elements() +
+                                                                       begin % Layout::kIndexWindow);
     std::uint32_t* const corners = store_.corners[chunk % 2];
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const UVec3 triangle = triangles[i];
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::uint32_t index = triangle[static_cast<int>(k)];
-        if (index >= plan_.input.vertex_count) return Status::kBadIndex;
-        const std::uint32_t block = index / kBlockVertices, slot = block % Layout::kCacheBlocks;
-        if (store_.blocks_held[slot] != block + 1) {
-          // Whether this chunk or the one before needs what is there.
-          if (store_.block_users[slot] + 1 >= clock_) {
-            GRIDIRON_TRY(ask_for_lone(index, chunk, 3 * i + k));
-            continue;
-          }
-          GRIDIRON_TRY(ask_for_block(block, slot, chunk));
-        }
-        store_.block_users[slot] = clock_;
-        corners[3 * i + k] = slot * kBlockBytes + index % kBlockVertices * kVertexBytes;
+    const std::uint32_t vertex_count = plan_.input.vertex_count;
+    for (std::uint32_t i = 0; i < 3 * count; ++i) {
+      const std::uint32_t index = indices[i];
+      if (index >= vertex_count) return Status::kBadIndex;
+      const std::uint32_t word = index * kVertexWords, line = word / kLineWords, slot = line % kLines;
+      const std::uint32_t place = word % (kLines * kLineWords) * 4;
+      // Of those that end in the next line one in eleven is not here whole.
+      if (store_.lines_held[slot] == line + 1 && word % kLineWords <= kLineWords - kVertexWords) {
+        store_.line_users[slot] = clock_;
+        corners[i] = place;
+        continue;
       }
+      GRIDIRON_TRY(ask_for(index, chunk, i));
     }
+    return Status::kOk;
+  }
+  // Asks for the lines of a vertex that are not here.
+  [[nodiscard]] GRIDIRON_OUTLINE Status ask_for(std::uint32_t index, std::uint32_t chunk, std::uint32_t corner) {
+    const std::uint32_t first = index * kVertexWords / kLineWords;
+    const std::uint32_t last = (index * kVertexWords + kVertexWords - 1) / kLineWords;
+    // Whether this chunk or the one before needs what is in their places; and of the last place the next is not behind.
+    const auto is_taken = [this](std::uint32_t line) {
+      const std::uint32_t slot = line % kLines;
+      return store_.lines_held[slot] != line + 1 && store_.line_users[slot] + 1 >= clock_;
+    };
+    if (is_taken(first) || is_taken(last) || last % kLines < first % kLines) return ask_for_lone(index, chunk, corner);
+    for (std::uint32_t line = first; line <= last; ++line) {
+      const std::uint32_t slot = line % kLines;
+      store_.line_users[slot] = clock_;
+      if (store_.lines_held[slot] == line + 1) continue;
+      store_.lines_held[slot] = line + 1;
+      const std::uint64_t begin = std::uint64_t{line} * kLineBytes;
+      const std::uint64_t rest = std::uint64_t{plan_.input.vertex_count} * kVertexBytes - begin;
+      GRIDIRON_TRY(transfers_.get(
+          store_.lines + slot * kLineBytes, plan_.input.vertices.offset_by(begin),
+          rest < kLineBytes ? round_up(static_cast<std::uint32_t>(rest), kPortableGranuleBytes) : kLineBytes,
+          corner_tag(chunk)));
+    }
+    store_.corners[chunk % 2][corner] = index * kVertexWords % (kLines * kLineWords) * 4;
     return Status::kOk;
   }
   [[nodiscard]] static std::uint8_t corner_tag(std::uint32_t chunk) {
     return static_cast<std::uint8_t>(kCornerTag + chunk % 2);
   }
-  [[nodiscard]] Status ask_for_block(std::uint32_t block, std::uint32_t slot, std::uint32_t chunk) {
-    const std::uint32_t rest = (plan_.input.vertex_count - block * kBlockVertices) * kVertexBytes;
-    store_.blocks_held[slot] = block + 1;
-    return transfers_.get(store_.blocks + slot * kBlockBytes,
-                          plan_.input.vertices.offset_by(std::uint64_t{block} * kBlockBytes),
-                          rest < kBlockBytes ? round_up(rest, kPortableGranuleBytes) : kBlockBytes, corner_tag(chunk));
-  }
-  [[nodiscard]] GRIDIRON_OUTLINE Status ask_for_lone(std::uint32_t index, std::uint32_t chunk, std::uint32_t corner) {
+  [[nodiscard]] Status ask_for_lone(std::uint32_t index, std::uint32_t chunk, std::uint32_t corner) {
     std::byte* const buffer = store_.lone[chunk % 2] + corner * CodesStore<Layout>::kLoneBytes;
     const Window<Vec3> window(buffer, plan_.input.vertices, index);
     store_.corners[chunk % 2][corner] =
-        static_cast<std::uint32_t>(reinterpret_cast<const std::byte*>(window.elements()) - store_.blocks);
+        static_cast<std::uint32_t>(reinterpret_cast<const std::byte*>(window.elements()) - store_.lines);
     return window.get(transfers_, 1, corner_tag(chunk));
   }
 
@@ -155,7 +172,7 @@ class RunCoder {
   }
   [[nodiscard]] GRIDIRON_INLINE CornerQuad corner_at(std::uint32_t place) const {
     // Not the word behind it, which may be under way.
-    return quad_of(*reinterpret_cast<const Vec3*>(store_.blocks + place));
+    return quad_of(*reinterpret_cast<const Vec3*>(store_.lines + place));
   }
   static GRIDIRON_INLINE void write_record(const CornerQuads& corners, std::uint32_t id, VertexTriangle& record) {
     using L = Lanes<4>;
@@ -187,9 +204,13 @@ class RunCoder {
 
   // Sorts the run and sends keys, samples and bounds on their way.
   [[nodiscard]] Status finish(std::uint32_t run) {
-    const bool is_in_spare =
-        sort_run<Layout::kDigitBits, 1>(store_.keys, store_.spare, kept_, kTreeCodeBits, store_.counts);
-    static_assert((kTreeCodeBits + Layout::kDigitBits - 1) / Layout::kDigitBits % 2 == 1);
+    std::uint32_t all = 0, same = ~0u;
+    for (std::uint32_t i = 0; i < kept_; ++i) {
+      all |= store_.keys[i].code();
+      same &= store_.keys[i].code();
+    }
+    const bool is_in_spare = sort_run<Layout::kDigitBits, 1>(
+        store_.keys, store_.spare, kept_, static_cast<std::uint32_t>(width_of(all & ~same)), store_.counts);
     const TreeKey* const sorted = is_in_spare ? store_.spare : store_.keys;
     if (kept_ > 0) {
       GRIDIRON_TRY(transfers_.put(sorted, plan_.run_keys.offset_by(std::uint64_t{run} * kRun * sizeof(TreeKey)),
