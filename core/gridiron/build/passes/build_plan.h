@@ -22,7 +22,7 @@ struct BuildLayout256K {
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;      ///< local memory of a core
   static constexpr std::uint32_t kCodeBudgetBytes = 60 * 1024;  ///< of it for code
   static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;  ///< of it for the stack
-  static constexpr std::uint32_t kRunTriangles = 2048;          ///< that one item codes and sorts
+  static constexpr std::uint32_t kRunTriangles = 4096;          ///< that one item codes and sorts
   static constexpr std::uint32_t kCacheLines = 512;             ///< of vertices, a power of two
   static constexpr std::uint32_t kChunkTriangles = 32;          ///< whose corners are asked for at once
   static constexpr std::uint32_t kIndexWindow = 512;            ///< triangles

@@ -184,7 +184,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     GRIDIRON_TRY(add_event({node, child, count}));
     for (std::uint32_t i = first; i < first + count; ++i) {
       const std::uint32_t id = keys_[i - begin_].key.id();
-      while (!stream_.can_push(id)) GRIDIRON_TRY(take_event());
+      while (stream_.is_full()) GRIDIRON_TRY(take_event());
       GRIDIRON_TRY(stream_.push(id));
     }
     return Status::kOk;
@@ -216,12 +216,11 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
   // All of them; afterwards the stream's memory is free.
   [[nodiscard]] Status take_events() {
     while (event_count_ > 0) GRIDIRON_TRY(take_event());
-    static_cast<void>(stream_.is_empty());
     return Status::kOk;
   }
   [[nodiscard]] GRIDIRON_INLINE Status take_record() {
     const VertexTriangle* record = nullptr;
-    GRIDIRON_TRY(stream_.pop(record));
+    GRIDIRON_TRY(stream_.pop(keys_[next_record_ - begin_].key.id(), record));
     const CornerQuads corners = corner_quads(*record);
     leaf_box_.add(corners);
     if (plan_.input.order == TreeOrder::kForAnyHit) leaf_area_ += area_of(corners);
