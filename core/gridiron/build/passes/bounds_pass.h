@@ -32,6 +32,7 @@ template <class P>
             box.add(point);
             inside = inside & (Lanes<4>::abs(point) <= limit);
           }
+          transfers.add_work(BuildWork::kVertex, count);
           return Status::kOk;
         })));
     if ((inside.bits() & 7u) != 7u) return Status::kBadVertex;

@@ -58,9 +58,10 @@ template <class P, class EachId>
 [[nodiscard]] Status find_middles(Transfers<P>& transfers, RecordRing& ring, MainAddress records, EachId&& each_id,
                                   QuadBox& range) {
   FourBoxes middles = FourBoxes::none();
-  const auto add = [&middles](const FourBoxes& boxes, const std::uint32_t*, std::uint32_t) GRIDIRON_INLINE_LAMBDA {
+  const auto add = [&middles, &transfers](const FourBoxes& boxes, const std::uint32_t*, std::uint32_t) GRIDIRON_INLINE_LAMBDA {
     const QuadRows middle = {boxes.low.x + boxes.high.x, boxes.low.y + boxes.high.y, boxes.low.z + boxes.high.z};
     middles.add({middle, middle});
+    transfers.add_work(BuildWork::kMiddleGroup);
   };
   GRIDIRON_TRY(for_each_boxes(transfers, ring, records, each_id, add));
   range = QuadBox::around(middles);
@@ -74,6 +75,7 @@ template <class P, class EachId, class Use>
   Status status = Status::kOk;
   const auto code = [&](const FourBoxes& boxes, const std::uint32_t* ids, std::uint32_t count) GRIDIRON_INLINE_LAMBDA {
     const Lanes<4>::Int codes = curve.codes_of(boxes);
+    transfers.add_work(BuildWork::kAgainGroup);
     for (std::uint32_t k = 0; k < count && status == Status::kOk; ++k) {
       status = use(static_cast<std::uint32_t>(codes[static_cast<int>(k)]), ids[k]);
     }
@@ -116,8 +118,8 @@ template <class Layout, class P>
                              }));
   constexpr std::uint32_t kFew = Layout::kFewDigitBits, kMany = Layout::kDigitBits;
   const bool is_in_key = count <= kFewRunKeys
-                             ? sort_run<kFew, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts)
-                             : sort_run<kMany, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts);
+                             ? sort_run<kFew, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts, transfers)
+                             : sort_run<kMany, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts, transfers);
   if (is_in_key) return Status::kOk;
   for (std::uint32_t i = 0; i < count; ++i) keys[i].key = keys[i].again;
   return Status::kOk;
@@ -129,8 +131,8 @@ template <class Layout, class P>
 /// @param flag   of all codes.
 /// @param emit   emit(keys, count) -> Status takes sorted keys, `key` of each.
 /// @param keys   Layout::kBucketKeys.
-template <class Layout, class Each, class Emit>
-[[nodiscard]] Status sort_far(std::uint32_t count, std::uint32_t flag, SortedKey* keys, std::uint32_t* counts,
+template <class Layout, class P, class Each, class Emit>
+[[nodiscard]] Status sort_far(Transfers<P>& transfers, std::uint32_t count, std::uint32_t flag, SortedKey* keys, std::uint32_t* counts,
                               Each&& each, Emit&& emit) {
   constexpr std::uint32_t kDigit = Layout::kDigitBits, kValues = 1u << kDigit, kRoom = Layout::kBucketKeys;
   std::uint32_t low = 0;  // codes below are done
@@ -171,7 +173,7 @@ template <class Layout, class Each, class Emit>
       taken = 0;
       return emit(keys, kRoom);
     }));
-    if (!is_one_code && sort_run<kDigit, 2>(&keys->key, &keys->again, taken, kTreeCodeBits, counts)) {
+    if (!is_one_code && sort_run<kDigit, 2>(&keys->key, &keys->again, taken, kTreeCodeBits, counts, transfers)) {
       for (std::uint32_t i = 0; i < taken; ++i) keys[i].key = keys[i].again;
     }
     done += taken;
@@ -208,6 +210,7 @@ template <class P, class Change>
     const Window<SortedKey> window(buffers.written, sorted, first + at);
     GRIDIRON_TRY(window.get(transfers, n, kSetupTag));
     GRIDIRON_TRY(transfers.wait(kSetupTag));
+    transfers.add_work(BuildWork::kGatheredKey, n);
     for (std::uint32_t i = 0; i < n; ++i) change(window.elements()[i], at + i);
     GRIDIRON_TRY(window.put(transfers, n, kSetupTag));
     GRIDIRON_TRY(transfers.wait(kSetupTag));
@@ -240,7 +243,7 @@ template <class Layout, class P>
   }
   std::uint64_t place = begin;
   return sort_far<Layout>(
-      count, kTreeCodedAgain, keys, counts,
+      transfers, count, kTreeCodedAgain, keys, counts,
       [&](auto&& visit) { return for_each_code(transfers, ring, plan.raw_records, curve, each_id, visit); },
       [&](const SortedKey* share, std::uint32_t n) -> Status {
         const std::uint64_t first = place;

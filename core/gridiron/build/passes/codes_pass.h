@@ -98,6 +98,7 @@ class RunCoder {
                                                                        begin % Layout::kIndexWindow);
     std::uint32_t* const corners = store_.corners[chunk % 2];
     const std::uint32_t vertex_count = plan_.input.vertex_count;
+    transfers_.add_work(BuildWork::kCorner, 3 * count);
     for (std::uint32_t i = 0; i < 3 * count; ++i) {
       const std::uint32_t index = indices[i];
       if (index >= vertex_count) return Status::kBadIndex;
@@ -115,6 +116,7 @@ class RunCoder {
   }
   // Asks for the lines of a vertex that are not here.
   [[nodiscard]] GRIDIRON_OUTLINE Status ask_for(std::uint32_t index, std::uint32_t chunk, std::uint32_t corner) {
+    transfers_.add_work(BuildWork::kMissedCorner);
     const std::uint32_t first = index * kVertexWords / kLineWords;
     const std::uint32_t last = (index * kVertexWords + kVertexWords - 1) / kLineWords;
     // Whether this chunk or the one before needs what is in their places; and of the last place the next is not behind.
@@ -157,6 +159,7 @@ class RunCoder {
     VertexTriangle* const records = store_.records[chunk % 4];
     const std::uint64_t chunk_first = first + chunk * kChunk;
     const std::uint32_t* const places = store_.corners[chunk % 2];
+    const std::uint32_t kept_before = kept_;
     for (std::uint32_t i = 0; i < count; i += 4) {
       CornerQuads corners[4];
       for (std::uint32_t k = 0; k < 4; ++k) {
@@ -167,6 +170,8 @@ class RunCoder {
       const std::uint32_t there = count - i < 4 ? (1u << (count - i)) - 1u : 15u;
       take_four(FourTriangles::of(corners), static_cast<std::uint32_t>(chunk_first) + i, there);
     }
+    transfers_.add_work(BuildWork::kCodedGroup, (count + 3) / 4);
+    transfers_.add_work(BuildWork::kDroppedTriangle, count - (kept_ - kept_before));
     return transfers_.put(records, plan_.raw_records.offset_by(chunk_first * sizeof(VertexTriangle)),
                           count * static_cast<std::uint32_t>(sizeof(VertexTriangle)), record_tag);
   }
@@ -210,7 +215,8 @@ class RunCoder {
       same &= store_.keys[i].code();
     }
     const bool is_in_spare = sort_run<Layout::kDigitBits, 1>(
-        store_.keys, store_.spare, kept_, static_cast<std::uint32_t>(width_of(all & ~same)), store_.counts);
+        store_.keys, store_.spare, kept_, static_cast<std::uint32_t>(width_of(all & ~same)), store_.counts,
+        transfers_);
     const TreeKey* const sorted = is_in_spare ? store_.spare : store_.keys;
     if (kept_ > 0) {
       GRIDIRON_TRY(transfers_.put(sorted, plan_.run_keys.offset_by(std::uint64_t{run} * kRun * sizeof(TreeKey)),

@@ -48,6 +48,7 @@ template <class Layout, class P>
             [&](const TreeKey* keys, std::uint64_t at, std::uint32_t n) {
               const auto before = static_cast<std::uint32_t>(at - base);
               const std::uint32_t last = keys[n - 1].code();
+              const std::uint32_t next_before = next;
               // At most all splitters, in all windows of a run together.
               for (; next < count && splitters[next] <= last; ++next) {
                 std::uint32_t low = 0;
@@ -58,6 +59,7 @@ template <class Layout, class P>
                 }
                 store.cuts[next][k] = before + low;
               }
+              transfers.add_work(BuildWork::kCut, next - next_before);
               return Status::kOk;
             })));
         for (; next < count; ++next) store.cuts[next][k] = key_count;

@@ -116,6 +116,7 @@ class TreeJoiner {
   // Makes a node above the pieces; those below it have been made.
   [[nodiscard]] Status make_node(std::uint32_t top) {
     GRIDIRON_TRY(fetch(transfers_, store_.top, plan_.tops.offset_by(std::uint64_t{top} * sizeof(TopNode))));
+    transfers_.add_work(BuildWork::kNode);
     const TopNode& from = store_.top;
     for (std::uint32_t i = 0; i < from.child_count; ++i) {
       const std::uint32_t child = from.children[i];
@@ -237,6 +238,7 @@ template <class P>
       const std::uint32_t side = begin / kNodes % 2, n = count - begin < kNodes ? count - begin : kNodes;
       GRIDIRON_TRY(get_share(begin + kNodes));
       GRIDIRON_TRY(transfers.wait(static_cast<std::uint8_t>(kFirstMacroTag + side)));
+      transfers.add_work(BuildWork::kNumberedNode, n);
       for (std::uint32_t i = 0; i < n; ++i) {
         TreeNode& node = store.nodes[side][i];
         const std::uint32_t level = node.reserved[0];

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <gridiron/base/lanes.h>
+#include <gridiron/build/passes/build_work.h>
 #include <gridiron/build/tree/tree_curve.h>
+#include <gridiron/dma/transfers.h>
 
 #include <cstdint>
 
@@ -47,18 +49,22 @@ GRIDIRON_INLINE std::uint64_t sum_counts(std::uint32_t* counts) {
 ///
 /// @param from, to  keys at every kStride'th place; both are changed.
 /// @param bits      of the code by which keys differ, 0..kTreeCodeBits.
+/// @param transfers  counts the work.
 /// @returns whether the sorted keys are in `to`, else in `from`.
-template <std::uint32_t kDigitBits, std::uint32_t kStride>
-bool sort_run(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t bits, std::uint32_t* counts) {
+template <std::uint32_t kDigitBits, std::uint32_t kStride, class P>
+bool sort_run(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t bits, std::uint32_t* counts,
+              Transfers<P>& transfers) {
   constexpr std::uint32_t kValues = 1u << kDigitBits;
   if (bits == 0) return false;
   const std::uint32_t high_shift = bits > kDigitBits ? bits - kDigitBits : std::uint32_t{0};
+  transfers.add_work(BuildWork::kSortCount, kValues);
+  transfers.add_work(BuildWork::kMovedKey, count);
   for (std::uint32_t i = 0; i < kValues; ++i) counts[i] = 0;
   for (std::uint32_t i = 0; i < count; ++i) ++counts[(from[i * kStride].code() >> high_shift) % kValues];
   if (sum_counts<kValues>(counts) <= std::uint64_t{kMostExchanges} * count) {
     move_by_digit<kValues, kStride>(from, to, count, high_shift, counts);
     if (high_shift == 0) return true;
-    // Bits above those that differ are the same.
+    transfers.add_work(BuildWork::kExchangedKey, count);
     std::uint32_t before = count > 0 ? to[0].code() : std::uint32_t{0};
     for (std::uint32_t i = 1; i < count; ++i) {
       const TreeKey key = to[i * kStride];
@@ -77,6 +83,8 @@ bool sort_run(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t bit
   }
 
   const std::uint32_t digits = (bits + kDigitBits - 1) / kDigitBits;
+  transfers.add_work(BuildWork::kSortCount, digits * kValues);
+  transfers.add_work(BuildWork::kMovedKey, digits * count);
   for (std::uint32_t i = 0; i < digits * kValues; ++i) counts[i] = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     std::uint32_t code = from[i * kStride].code();

@@ -32,6 +32,7 @@ class RecordStream {
 
   /// Asks for a record. Precondition: !is_full(). The record popped last is lost.
   [[nodiscard]] GRIDIRON_INLINE Status push(std::uint32_t id) {
+    transfers_.add_work(BuildWork::kAskedRecord);
     const std::uint32_t slot = pushed_++ % RecordRing::kSlots;
     return transfers_.get(place_of(slot, id), records_.offset_by(std::uint64_t{id} * sizeof(VertexTriangle)),
                           sizeof(VertexTriangle), tag_of(slot));

@@ -59,7 +59,8 @@ class BucketSorter {
       return Status::kOk;
     }));
     const auto differing = static_cast<std::uint32_t>(width_of(all & ~same));
-    if (sort_run<Layout::kDigitBits, 2>(&keys->key, &keys->again, count, differing, store_.counts)) {
+    if (sort_run<Layout::kDigitBits, 2>(&keys->key, &keys->again, count, differing, store_.counts,
+                                        transfers_)) {
       for (std::uint32_t i = 0; i < count; ++i) keys[i].key = keys[i].again;
     }
     GRIDIRON_TRY(code_crowded(keys, count));
@@ -127,6 +128,7 @@ class BucketSorter {
         GRIDIRON_TRY(transfers_.wait(tag_of(taken)));
         const TreeKey* const keys = window_of(taken).elements();
         const std::uint32_t size = sizes[taken % kPieces];
+        transfers_.add_work(BuildWork::kGatheredKey, size);
         for (std::uint32_t i = 0; i < size; ++i) GRIDIRON_TRY(visit(keys[i]));
         ++taken;
       }
@@ -150,6 +152,7 @@ class BucketSorter {
       std::uint32_t end = begin + kFewTreeTriangles + 1;
       while (end < count && keys[end].key.code() == code) ++end;
       const std::uint32_t size = end - begin;
+      transfers_.add_work(BuildWork::kGatheredKey, 2 * size);
       for (std::uint32_t i = 0; i < size; ++i) store_.ids[i] = keys[begin + i].key.id();
       GRIDIRON_TRY((code_again<Layout>(transfers_, store_.ring, plan_.raw_records, keys + begin, size, store_.counts)));
       for (std::uint32_t i = 0; i < size; ++i) {
@@ -166,7 +169,7 @@ class BucketSorter {
   [[nodiscard]] GRIDIRON_OUTLINE Status sort_many(std::uint32_t bucket, std::uint32_t first, std::uint32_t count) {
     std::uint64_t place = first;
     GRIDIRON_TRY((sort_far<Layout>(
-        count, 0, store_.keys, store_.counts,
+        transfers_, count, 0, store_.keys, store_.counts,
         [&](auto&& visit) {
           return each_key(bucket, [&](TreeKey key) { return visit(key.code(), key.id()); });
         },

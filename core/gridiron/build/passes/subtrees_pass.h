@@ -126,6 +126,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     SortedKey* const keys = keys_ + (begin - begin_);
     const std::uint32_t count = end - begin;
     if (count > kFewTreeTriangles && is_crowd(keys[0], keys[count - 1])) {
+      transfers_.add_work(BuildWork::kGatheredKey, count);
       for (std::uint32_t i = 0; i < count; ++i) keys[i].key = again_of(keys[i]);
       return Status::kOk;
     }
@@ -168,6 +169,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     OpenNode& node = store_.nodes[slot];
     while (node.is_open) GRIDIRON_TRY(take_event());
     GRIDIRON_TRY(this->split_range(begin, end, depth_, level.ranges, level.count));
+    count_split(transfers_, begin, end, level.count, this->leaf_triangles());
     level.next = 0;
     level.slot = slot;
     node.count = level.count;
@@ -207,6 +209,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     first_event_ = (first_event_ + 1) % Store::kEvents;
     --event_count_;
     if (done.child == Store::kEnds) return end_node(done.node);
+    transfers_.add_work(BuildWork::kLeaf);
     const QuadBox box = leaf_box_.grown(margin_);
     const float area = leaf_area_;
     leaf_box_ = QuadBox{};
@@ -219,6 +222,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     return Status::kOk;
   }
   [[nodiscard]] GRIDIRON_INLINE Status take_record() {
+    transfers_.add_work(BuildWork::kTakenRecord);
     const VertexTriangle* record = nullptr;
     GRIDIRON_TRY(stream_.pop(keys_[next_record_ - begin_].key.id(), record));
     const CornerQuads corners = corner_quads(*record);
@@ -247,6 +251,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
   }
 
   [[nodiscard]] Status end_node(std::uint32_t slot) {
+    transfers_.add_work(BuildWork::kNode);
     OpenNode& open_node = store_.nodes[slot];
     const std::uint32_t place = next_node_++ % Store::kNodes;
     const auto tag = static_cast<std::uint8_t>(kNodeTag + place);

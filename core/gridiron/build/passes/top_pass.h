@@ -79,6 +79,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     Level& level = store_.levels[depth_++];
     GRIDIRON_TRY(this->split_range(begin, end, depth_, level.ranges, level.count));
     GRIDIRON_TRY(status_);
+    count_split(transfers_, begin, end, level.count, this->leaf_triangles());
     level.next = 0;
     level.number = top_count_++;
     level.node = {};
