@@ -211,9 +211,16 @@ struct FourTriangles {
     return {p.x - q.x, p.y - q.y, p.z - q.z};
   }
   [[nodiscard]] GRIDIRON_RARE std::uint32_t decide_areas(std::uint32_t sure) const {
-    for (int lane = 0; lane < 4; ++lane) {
+    // Of those with two equal corners nothing need be computed.
+    const auto have_size = [](const QuadRows& edge) {
+      using L = Lanes<4>;
+      return L::Float(0.0f) < L::larger_size(L::larger_size(edge.x, edge.y), edge.z);
+    };
+    const std::uint32_t open =
+        (have_size(difference(b, a)) & have_size(difference(c, a)) & have_size(difference(c, b))).bits() & ~sure;
+    for (int lane = 0; lane < 4 && open != 0; ++lane) {
       const auto corner = [lane](const QuadRows& rows) { return Vec3(rows.x.v[lane], rows.y.v[lane], rows.z.v[lane]); };
-      if ((sure >> lane & 1u) == 0 && !has_zero_area(corner(a), corner(b), corner(c))) sure |= 1u << lane;
+      if ((open >> lane & 1u) != 0 && !has_zero_area(corner(a), corner(b), corner(c))) sure |= 1u << lane;
     }
     return sure;
   }

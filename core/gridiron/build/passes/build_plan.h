@@ -160,7 +160,7 @@ static_assert(sizeof(TopState) == 128);
 inline constexpr std::uint32_t kVertexItem = 2048;    ///< vertices that one item bounds
 inline constexpr std::uint32_t kVertexWindow = 256;   ///< of them at once
 inline constexpr std::uint32_t kMostVertices = 1u << 30;  ///< of a mesh
-inline constexpr std::uint32_t kMostRunSamples = 64;
+inline constexpr std::uint32_t kMostRunSamples = 32;
 inline constexpr std::uint32_t kNoSample = ~0u;       ///< more than any code
 inline constexpr std::uint32_t kRunGroup = 8;         ///< runs whose cuts one item finds
 inline constexpr std::uint32_t kBucketPieces = 256;   ///< of a bucket, at most

@@ -202,12 +202,13 @@ struct FarBuffers {
 };
 
 /// Changes sorted keys [first, first + count) in main memory. @param change  change(key, number from first on).
+/// @param buffer  of window_bytes<SortedKey>(room).
 template <class P, class Change>
-[[nodiscard]] Status change_far(Transfers<P>& transfers, FarBuffers& buffers, MainAddress sorted, std::uint64_t first,
-                                std::uint32_t count, Change&& change) {
-  for (std::uint32_t at = 0; at < count; at += FarBuffers::kKeys) {
-    const std::uint32_t n = count - at < FarBuffers::kKeys ? count - at : FarBuffers::kKeys;
-    const Window<SortedKey> window(buffers.written, sorted, first + at);
+[[nodiscard]] Status change_far(Transfers<P>& transfers, std::byte* buffer, std::uint32_t room, MainAddress sorted,
+                                std::uint64_t first, std::uint32_t count, Change&& change) {
+  for (std::uint32_t at = 0; at < count; at += room) {
+    const std::uint32_t n = count - at < room ? count - at : room;
+    const Window<SortedKey> window(buffer, sorted, first + at);
     GRIDIRON_TRY(window.get(transfers, n, kSetupTag));
     GRIDIRON_TRY(transfers.wait(kSetupTag));
     transfers.add_work(BuildWork::kGatheredKey, n);
@@ -216,6 +217,11 @@ template <class P, class Change>
     GRIDIRON_TRY(transfers.wait(kSetupTag));
   }
   return Status::kOk;
+}
+template <class P, class Change>
+[[nodiscard]] Status change_far(Transfers<P>& transfers, FarBuffers& buffers, MainAddress sorted, std::uint64_t first,
+                                std::uint32_t count, Change&& change) {
+  return change_far(transfers, buffers.written, FarBuffers::kKeys, sorted, first, count, change);
 }
 
 /// Writes `again` of sorted keys [begin, end) that have one code, in main memory.

@@ -8,6 +8,9 @@
 #include <gridiron/build/passes/pass_tools.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_curve.h>
+#include <gridiron/build/tree/tree_order.h>
+
+#include <bit>
 
 namespace gridiron {
 
@@ -165,10 +168,14 @@ class RunCoder {
       for (std::uint32_t k = 0; k < 4; ++k) {
         const std::uint32_t j = i + k < count ? i + k : count - 1;
         corners[k] = {corner_at(places[3 * j]), corner_at(places[3 * j + 1]), corner_at(places[3 * j + 2])};
-        write_record(corners[k], static_cast<std::uint32_t>(chunk_first) + j, records[j]);
       }
       const std::uint32_t there = count - i < 4 ? (1u << (count - i)) - 1u : 15u;
-      take_four(FourTriangles::of(corners), static_cast<std::uint32_t>(chunk_first) + i, there);
+      const FourTriangles triangles = FourTriangles::of(corners);
+      const CornerQuad areas = areas_of(triangles);
+      for (std::uint32_t k = 0; k < 4 && i + k < count; ++k) {
+        write_record(corners[k], static_cast<std::uint32_t>(chunk_first) + i + k, areas.v[k], records[i + k]);
+      }
+      take_four(triangles, static_cast<std::uint32_t>(chunk_first) + i, there);
     }
     transfers_.add_work(BuildWork::kCodedGroup, (count + 3) / 4);
     transfers_.add_work(BuildWork::kDroppedTriangle, count - (kept_ - kept_before));
@@ -179,11 +186,13 @@ class RunCoder {
     // Not the word behind it, which may be under way.
     return quad_of(*reinterpret_cast<const Vec3*>(store_.lines + place));
   }
-  static GRIDIRON_INLINE void write_record(const CornerQuads& corners, std::uint32_t id, VertexTriangle& record) {
+  // Until its leaf is made, a record has the triangle's area in the place of its first reserved word.
+  static GRIDIRON_INLINE void write_record(const CornerQuads& corners, std::uint32_t id, float area,
+                                           VertexTriangle& record) {
     using L = Lanes<4>;
     auto* const words = reinterpret_cast<float*>(&record);
     const CornerQuad a = corners.a, b = corners.b, c = corners.c;
-    const L::Int end = {{0, 0, 0, static_cast<std::int32_t>(id)}};
+    const L::Int end = {{0, std::bit_cast<std::int32_t>(area), 0, static_cast<std::int32_t>(id)}};
     const L::Float cz = L::shuffle_quads<2, 3, 3, 3>(c);  // the last lane is 0
     L::shuffle_quads<0, 1, 2, 4>(a, b).store(words);
     L::shuffle_quads<1, 2, 4, 5>(b, c).store(words + 4);

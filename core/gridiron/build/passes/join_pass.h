@@ -16,7 +16,8 @@ struct JoinStore {
   alignas(128) std::byte counts[2 * window_bytes<LevelCounts>(kWindow)];
   alignas(128) std::byte tops[2 * window_bytes<TopNode>(kWindow)];
   alignas(128) TopNode top;
-  alignas(128) LevelCounts firsts;
+  alignas(128) LevelCounts firsts[kWindow];
+  alignas(128) std::byte heads[window_bytes<SubtreeBucket>(kWindow)];
   alignas(128) TreeNode node;
   alignas(128) PieceResult results[kTreeWidth];   // of children
   alignas(32) std::byte pieces[kTreeWidth][32];   // likewise, each congruent with its place
@@ -93,24 +94,28 @@ class TreeJoiner {
       }
       return Status::kOk;
     };
-    for (std::uint32_t bucket = 0; bucket < store_.top_state.bucket_count; ++bucket) {
-      GRIDIRON_TRY(fetch(transfers_, store_.firsts, plan_.level_counts.offset_by(bucket * sizeof(LevelCounts))));
-      GRIDIRON_TRY(transfers_.get(store_.pieces[bucket % 2] + bucket % 2 * 16,
-                                  plan_.buckets.offset_by(bucket * sizeof(SubtreeBucket)), sizeof(SubtreeBucket),
-                                  kSetupTag));
+    std::uint32_t top_begin = 0;  // of the next node above the pieces
+    const auto number_buckets = [&](const LevelCounts* counts, std::uint64_t first, std::uint32_t count) -> Status {
+      const Window<SubtreeBucket> heads(store_.heads, plan_.buckets, first);
+      GRIDIRON_TRY(heads.get(transfers_, count, kSetupTag));
       GRIDIRON_TRY(transfers_.wait(kSetupTag));
-      const auto& head = *reinterpret_cast<const SubtreeBucket*>(store_.pieces[bucket % 2] + bucket % 2 * 16);
-      for (std::uint32_t level = 0; level < kMaxTreeDepth; ++level) {
-        const std::uint32_t count = store_.firsts.of[level];
-        store_.firsts.of[level] = store_.next[level];
-        store_.next[level] += count;
+      GRIDIRON_TRY(transfers_.wait(kFirstOutputTag + 1));
+      for (std::uint32_t i = 0; i < count; ++i) {
+        for (std::uint32_t level = 0; level < kMaxTreeDepth; ++level) {
+          store_.firsts[i].of[level] = store_.next[level];
+          store_.next[level] += counts[i].of[level];
+        }
+        if (top_begin >= heads.elements()[i].end) continue;
+        GRIDIRON_TRY(number_tops(heads.elements()[i].end));
+        top_begin = next_top < store_.top_state.top_count ? store_.top.begin : ~0u;
       }
-      GRIDIRON_TRY(transfers_.put(&store_.firsts, plan_.level_firsts.offset_by(bucket * sizeof(LevelCounts)),
-                                  sizeof(LevelCounts), kFirstOutputTag));
-      GRIDIRON_TRY(transfers_.wait(kFirstOutputTag));
-      GRIDIRON_TRY(number_tops(head.end));
-    }
-    return Status::kOk;
+      return transfers_.put(store_.firsts, plan_.level_firsts.offset_by(first * sizeof(LevelCounts)),
+                            count * static_cast<std::uint32_t>(sizeof(LevelCounts)), kFirstOutputTag + 1);
+    };
+    GRIDIRON_TRY((for_each_window<LevelCounts, JoinStore::kWindow>(transfers_, store_.counts, plan_.level_counts, 0,
+                                                                   store_.top_state.bucket_count, kFirstMacroTag,
+                                                                   number_buckets)));
+    return transfers_.wait(kFirstOutputTag + 1);
   }
 
   // Makes a node above the pieces; those below it have been made.

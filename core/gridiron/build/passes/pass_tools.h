@@ -98,15 +98,16 @@ template <class P>
 }
 
 /// Counts the work of splitting a range into parts: a search for each, over half of the keys each time; where not all
-/// parts are leaves, all that are there are weighed for each.
+/// parts are leaves at once, all that are there are weighed for each.
 template <class P>
 void count_split(Transfers<P>& transfers, std::uint32_t begin, std::uint32_t end, std::uint32_t parts,
                  std::uint32_t leaf_triangles) {
   const std::uint32_t size = end - begin;
   const auto steps = static_cast<std::uint32_t>(width_of(size));
-  transfers.add_work(BuildWork::kPart, parts);
   transfers.add_work(BuildWork::kSearchStep, parts * (steps > 2 ? steps - 2 : std::uint32_t{1}));
-  if (size > kTreeWidth * leaf_triangles) transfers.add_work(BuildWork::kWeighedPart, parts * (parts + 1) / 2);
+  if (size <= kTreeWidth / 2 * leaf_triangles) return;
+  transfers.add_work(BuildWork::kPart, parts);
+  transfers.add_work(BuildWork::kWeighedPart, parts * (parts + 1) / 2);
 }
 
 /// Calls work(item) for each item that this core claims. @param item_count  of the pass.

@@ -11,6 +11,8 @@
 #include <gridiron/build/tree/tree_order.h>
 #include <gridiron/build/tree/tree_splits.h>
 
+#include <bit>
+
 namespace gridiron {
 
 template <class Layout>
@@ -227,7 +229,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     GRIDIRON_TRY(stream_.pop(keys_[next_record_ - begin_].key.id(), record));
     const CornerQuads corners = corner_quads(*record);
     leaf_box_.add(corners);
-    if (plan_.input.order == TreeOrder::kForAnyHit) leaf_area_ += area_of(corners);
+    if (plan_.input.order == TreeOrder::kForAnyHit) leaf_area_ += std::bit_cast<float>(record->reserved[0]);
     return write_record(*record);
   }
   // A child's box and area go to its node, or those of a piece to main memory.
@@ -292,7 +294,10 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
   [[nodiscard]] GRIDIRON_INLINE Status write_record(const VertexTriangle& record) {
     const auto* const from = reinterpret_cast<const std::uint32_t*>(&record);
     auto* const to = reinterpret_cast<std::uint32_t*>(sent_window().elements() + (next_record_ - record_sent_));
-    for (std::uint32_t i = 0; i < sizeof record / 4; i += 4) Lanes<4>::Int::load(from + i).store(to + i);
+    for (std::uint32_t i = 0; i < 8; i += 4) Lanes<4>::Int::load(from + i).store(to + i);
+    // Without the area.
+    const Lanes<4>::Int kept = {{-1, 0, 0, -1}};
+    (Lanes<4>::Int::load(from + 8) & kept).store(to + 8);
     ++next_record_;
     return next_record_ - record_sent_ == Store::kRecords ? send_records() : Status::kOk;
   }

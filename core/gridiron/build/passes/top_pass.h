@@ -224,8 +224,8 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
         GRIDIRON_TRY((code_again_far<Layout>(transfers_, store_.ring, store_.far, plan_, begin, end, store_.keys,
                                              store_.counts)));
       }
-      GRIDIRON_TRY(change_far(transfers_, store_.far, plan_.sorted, begin, count,
-                              [](SortedKey& key, std::uint32_t) { key.key = again_of(key); }));
+      GRIDIRON_TRY(change_far(transfers_, reinterpret_cast<std::byte*>(store_.keys), Layout::kBucketKeys - 3, plan_.sorted,
+                              begin, count, [](SortedKey& key, std::uint32_t) { key.key = again_of(key); }));
     }
     // What is held here is out of date.
     for (std::uint32_t i = 0; i < TopStore<Layout>::kLines; ++i) store_.line_held[i] = 0;
