@@ -25,10 +25,10 @@ inline constexpr WorkKind kBuildPassKinds[] = {
 
 inline constexpr WorkPrice kBuildPassPrices[] = {
     {BuildWork::kVertex, 8},         // 2 loads, a shuffle; 2 + 2 + 3 even operations, unrolled
-    {BuildWork::kCorner, 18},        // 14 even, 14 odd of scalars in memory
+    {BuildWork::kCorner, 10},        // in lanes; of each a load, a compare and a store of words
     {BuildWork::kMissedCorner, 60},  // two lines looked for; without the command
-    {BuildWork::kCodedGroup, 150},   // 12 corners and 12 quadwords of records: 105 odd; boxes, areas, codes: 125 even
-    {BuildWork::kDroppedTriangle, 260},  // a plane in doubles, then three
+    {BuildWork::kCodedGroup, 175},   // 12 corners and 12 quadwords of records: 105 odd; boxes, areas, codes: 155 even
+    {BuildWork::kDroppedTriangle, 40},   // two equal corners; a triangle that has none takes some 260
     {BuildWork::kSortCount, 5},
     {BuildWork::kMovedKey, 22},      // counted and moved: 11 even, 16 odd
     {BuildWork::kExchangedKey, 14},  // with a branch that goes the rarer way one time in three
@@ -37,7 +37,7 @@ inline constexpr WorkPrice kBuildPassPrices[] = {
     {BuildWork::kMiddleGroup, 80},
     {BuildWork::kAgainGroup, 130},
     {BuildWork::kAskedRecord, 20},   // without the command
-    {BuildWork::kTakenRecord, 85},   // box, a square root, six quadwords copied
+    {BuildWork::kTakenRecord, 45},   // box, six quadwords copied
     {BuildWork::kLeaf, 60},
     {BuildWork::kPart, 250},         // two levels by way of doubles, parts behind it moved
     {BuildWork::kWeighedPart, 15},   // 64 bits

@@ -64,15 +64,15 @@ template <class Layout, class P>
   const auto sum_up = [&]() -> Status {
     FourBoxes bounds = FourBoxes::none();
     std::uint32_t count = 0;
-    GRIDIRON_TRY((for_each_window<RunPart, 8>(transfers, store.windows, plan.run_parts, 0, plan.run_count,
-                                              kFirstMacroTag,
-                                              [&](const RunPart* parts, std::uint64_t, std::uint32_t part_count) {
-                                                for (std::uint32_t i = 0; i < part_count; ++i) {
-                                                  bounds.add(parts[i].bounds);
-                                                  count += parts[i].count;
-                                                }
-                                                return Status::kOk;
-                                              })));
+    GRIDIRON_TRY(
+        (for_each_window<RunPart, 8>(transfers, store.windows, plan.run_parts, 0, plan.run_count, kFirstMacroTag,
+                                     [&](const RunPart* parts, std::uint64_t, std::uint32_t part_count) {
+                                       for (std::uint32_t i = 0; i < part_count; ++i) {
+                                         bounds.add(parts[i].bounds);
+                                         count += parts[i].count;
+                                       }
+                                       return Status::kOk;
+                                     })));
     if (count == 0) return Status::kNoTriangles;
     if (count > plan.input.record_room) return Status::kMemoryTooSmall;
     const QuadBox all = QuadBox::around(bounds);

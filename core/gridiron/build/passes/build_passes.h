@@ -5,8 +5,8 @@
 
 #include <gridiron/base/work_counters.h>
 #include <gridiron/build/passes/bounds_pass.h>
-#include <gridiron/build/passes/build_plan.h>
 #include <gridiron/build/passes/buckets_pass.h>
+#include <gridiron/build/passes/build_plan.h>
 #include <gridiron/build/passes/codes_pass.h>
 #include <gridiron/build/passes/cuts_pass.h>
 #include <gridiron/build/passes/join_pass.h>

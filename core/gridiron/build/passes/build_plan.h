@@ -53,8 +53,8 @@ struct BuildLayout64K {
   /// @endcond
 };
 
-/// What is built and where. All addresses are multiples of kLineBytes. Memory behind the arrays of vertices and triangles
-/// is readable up to a multiple of 16 bytes.
+/// What is built and where. All addresses are multiples of kLineBytes. Memory behind the arrays of vertices and
+/// triangles is readable up to a multiple of 16 bytes.
 struct BuildInput {
   MainAddress vertices;   ///< Vec3[vertex_count]
   MainAddress triangles;  ///< UVec3[triangle_count]
@@ -102,8 +102,8 @@ struct BuildState {
 };
 static_assert(sizeof(BuildState) == 128);
 
-/// A sorted key. Where its code is that of more than kFewTreeTriangles, `again` is the key that stands at this place once
-/// they are coded again.
+/// A sorted key. Where its code is that of more than kFewTreeTriangles, `again` is the key that stands at this place
+/// once they are coded again.
 struct alignas(16) SortedKey {
   TreeKey key, again;
 };
@@ -157,30 +157,41 @@ static_assert(sizeof(TopState) == 128);
 
 // --- Plan ---------------------------------------------------------------------------------------------------------
 
-inline constexpr std::uint32_t kVertexItem = 2048;    ///< vertices that one item bounds
-inline constexpr std::uint32_t kVertexWindow = 256;   ///< of them at once
-inline constexpr std::uint32_t kMostVertices = 1u << 30;  ///< of a mesh
+inline constexpr std::uint32_t kVertexItem = 2048;        ///< vertices that one item bounds
+inline constexpr std::uint32_t kVertexWindow = 256;       ///< of them at once
+inline constexpr std::uint32_t kMostVertices = 1u << 29;  ///< of a mesh
 inline constexpr std::uint32_t kMostRunSamples = 32;
-inline constexpr std::uint32_t kNoSample = ~0u;       ///< more than any code
-inline constexpr std::uint32_t kRunGroup = 8;         ///< runs whose cuts one item finds
-inline constexpr std::uint32_t kBucketPieces = 256;   ///< of a bucket, at most
+inline constexpr std::uint32_t kNoSample = ~0u;      ///< more than any code
+inline constexpr std::uint32_t kRunGroup = 8;        ///< runs whose cuts one item finds
+inline constexpr std::uint32_t kBucketPieces = 256;  ///< of a bucket, at most
 inline constexpr std::uint32_t kVertexBytes = sizeof(Vec3), kIndexBytes = sizeof(UVec3);
 static_assert(kVertexBytes == 12 && kIndexBytes == 12);
 
 /// The passes in their order.
-enum class BuildPass : std::uint8_t { kBounds, kCodes, kBuckets, kCuts, kSort, kTop, kSubtrees, kJoin, kNumbers, kCount };
+enum class BuildPass : std::uint8_t {
+  kBounds,
+  kCodes,
+  kBuckets,
+  kCuts,
+  kSort,
+  kTop,
+  kSubtrees,
+  kJoin,
+  kNumbers,
+  kCount
+};
 inline constexpr std::uint32_t kBuildPassCount = static_cast<std::uint32_t>(BuildPass::kCount);
 
 /// Counts and places that follow from the input and a layout's sizes.
 struct BuildPlan {
   BuildInput input;
   std::uint32_t vertex_items, run_count, run_stride;  ///< run_stride: entries of a row of cuts, a multiple of kRunGroup
-  std::uint32_t run_samples;    ///< of a run
-  std::uint32_t sampled_runs;   ///< every so many'th run is sampled
-  std::uint32_t bucket_room;    ///< buckets that are sorted, at most
-  std::uint32_t bucket_limit;   ///< keys of one, as far as samples tell
-  std::uint32_t piece_limit;    ///< triangles of a piece that can be split
-  std::uint32_t subtree_room;   ///< buckets of pieces, at most
+  std::uint32_t run_samples;                          ///< of a run
+  std::uint32_t sampled_runs;                         ///< every so many'th run is sampled
+  std::uint32_t bucket_room;                          ///< buckets that are sorted, at most
+  std::uint32_t bucket_limit;                         ///< keys of one, as far as samples tell
+  std::uint32_t piece_limit;                          ///< triangles of a piece that can be split
+  std::uint32_t subtree_room;                         ///< buckets of pieces, at most
   std::uint32_t item_counts[kBuildPassCount];
   MainAddress vertex_parts, run_keys, samples, run_parts, state, splitters, cuts, sorted, raw_records, top_state, tops,
       top_results, pieces, piece_results, buckets, level_counts, level_firsts, raw_nodes;
@@ -224,8 +235,9 @@ template <class Layout>
   const std::uint32_t top_room = (kMaxTreeDepth - 1) * shares(n, plan.piece_limit) + 1;
   const std::uint32_t piece_room = top_room * kTreeWidth;
   plan.subtree_room = 2 * shares(n, plan.piece_limit) + 2 + shares(piece_room, kBucketPieces);
-  std::uint32_t items[kBuildPassCount] = {plan.vertex_items, plan.run_count, 1, plan.run_stride / kRunGroup,
-                                          plan.bucket_room, 1, plan.subtree_room, 1, plan.subtree_room};
+  std::uint32_t items[kBuildPassCount] = {
+      plan.vertex_items, plan.run_count, 1, plan.run_stride / kRunGroup, plan.bucket_room, 1, plan.subtree_room, 1,
+      plan.subtree_room};
   for (std::uint32_t i = 0; i < kBuildPassCount; ++i) plan.item_counts[i] = items[i];
   std::uint64_t end = input.scratch.value;
   const auto place = [&end](std::uint64_t bytes) {

@@ -11,26 +11,26 @@ namespace gridiron {
 /// Counted like Work, and numbered behind it.
 enum class BuildWork : std::uint8_t {
   kFirst = kSharedWorkCount,
-  kVertex = kFirst,   ///< vertices bounded
-  kCorner,            ///< corners of triangles looked for in the lines of vertices that are there
-  kMissedCorner,      ///< of these, corners that were not there whole
-  kCodedGroup,        ///< SIMD groups of triangles coded, and written as records
-  kDroppedTriangle,   ///< triangles without an area
-  kSortCount,         ///< values of a digit whose keys were counted and summed up
-  kMovedKey,          ///< keys moved to where a digit of their codes belongs
-  kExchangedKey,      ///< keys looked at, and moved where needed, behind the ones before them
-  kCut,               ///< places of a bucket's begin in a run that were looked for
-  kGatheredKey,       ///< keys taken from runs to their bucket; or from here to there
-  kMiddleGroup,       ///< SIMD groups of triangles whose middles were found, to code them again
-  kAgainGroup,        ///< SIMD groups of triangles coded again
-  kAskedRecord,       ///< records asked for
-  kTakenRecord,       ///< records of leaves taken: box, area, and the record written
-  kLeaf,              ///< leaves whose boxes went to their nodes
-  kPart,              ///< parts of ranges made by splitting another one
-  kWeighedPart,       ///< parts whose weights were compared, to split the one that weighs the most
-  kSearchStep,        ///< steps to the place where a part is split
-  kNode,              ///< nodes made: boxes and order of their children
-  kNumberedNode,      ///< nodes that got their numbers
+  kVertex = kFirst,  ///< vertices bounded
+  kCorner,           ///< corners of triangles looked for in the lines of vertices that are there
+  kMissedCorner,     ///< of these, corners that were not there whole
+  kCodedGroup,       ///< SIMD groups of triangles coded, and written as records
+  kDroppedTriangle,  ///< triangles without an area
+  kSortCount,        ///< values of a digit whose keys were counted and summed up
+  kMovedKey,         ///< keys moved to where a digit of their codes belongs
+  kExchangedKey,     ///< keys looked at, and moved where needed, behind the ones before them
+  kCut,              ///< places of a bucket's begin in a run that were looked for
+  kGatheredKey,      ///< keys taken from runs to their bucket; or from here to there
+  kMiddleGroup,      ///< SIMD groups of triangles whose middles were found, to code them again
+  kAgainGroup,       ///< SIMD groups of triangles coded again
+  kAskedRecord,      ///< records asked for
+  kTakenRecord,      ///< records of leaves taken: box, area, and the record written
+  kLeaf,             ///< leaves whose boxes went to their nodes
+  kPart,             ///< parts of ranges made by splitting another one
+  kWeighedPart,      ///< parts whose weights were compared, to split the one that weighs the most
+  kSearchStep,       ///< steps to the place where a part is split
+  kNode,             ///< nodes made: boxes and order of their children
+  kNumberedNode,     ///< nodes that got their numbers
   kEnd
 };
 static_assert(static_cast<std::uint32_t>(BuildWork::kEnd) <= kWorkKindCount);

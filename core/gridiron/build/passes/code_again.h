@@ -58,7 +58,8 @@ template <class P, class EachId>
 [[nodiscard]] Status find_middles(Transfers<P>& transfers, RecordRing& ring, MainAddress records, EachId&& each_id,
                                   QuadBox& range) {
   FourBoxes middles = FourBoxes::none();
-  const auto add = [&middles, &transfers](const FourBoxes& boxes, const std::uint32_t*, std::uint32_t) GRIDIRON_INLINE_LAMBDA {
+  const auto add = [&middles, &transfers](const FourBoxes& boxes, const std::uint32_t*,
+                                          std::uint32_t) GRIDIRON_INLINE_LAMBDA {
     const QuadRows middle = {boxes.low.x + boxes.high.x, boxes.low.y + boxes.high.y, boxes.low.z + boxes.high.z};
     middles.add({middle, middle});
     transfers.add_work(BuildWork::kMiddleGroup);
@@ -87,8 +88,8 @@ template <class P, class EachId, class Use>
 /// Up to how many keys are sorted by small digits.
 inline constexpr std::uint32_t kFewRunKeys = 512;
 
-/// Codes triangles again in the store. @param keys  `key` of each has the id of its triangle, in order; gets the new one.
-/// `again` is lost.
+/// Codes triangles again in the store. @param keys  `key` of each has the id of its triangle, in order; gets the new
+/// one. `again` is lost.
 template <class Layout, class P>
 [[nodiscard]] Status code_again(Transfers<P>& transfers, RecordRing& ring, MainAddress records, SortedKey* keys,
                                 std::uint32_t count, std::uint32_t* counts) {
@@ -132,8 +133,8 @@ template <class Layout, class P>
 /// @param emit   emit(keys, count) -> Status takes sorted keys, `key` of each.
 /// @param keys   Layout::kBucketKeys.
 template <class Layout, class P, class Each, class Emit>
-[[nodiscard]] Status sort_far(Transfers<P>& transfers, std::uint32_t count, std::uint32_t flag, SortedKey* keys, std::uint32_t* counts,
-                              Each&& each, Emit&& emit) {
+[[nodiscard]] Status sort_far(Transfers<P>& transfers, std::uint32_t count, std::uint32_t flag, SortedKey* keys,
+                              std::uint32_t* counts, Each&& each, Emit&& emit) {
   constexpr std::uint32_t kDigit = Layout::kDigitBits, kValues = 1u << kDigit, kRoom = Layout::kBucketKeys;
   std::uint32_t low = 0;  // codes below are done
   // Each share has a key at least.
@@ -243,9 +244,8 @@ template <class Layout, class P>
   GRIDIRON_TRY(find_middles(transfers, ring, plan.raw_records, each_id, middles));
   const TreeCurve curve(middles);
   if (count <= kFewTreeTriangles || curve.is_flat()) {
-    return change_far(transfers, buffers, plan.sorted, begin, count, [](SortedKey& key, std::uint32_t i) {
-      key.again = numbered(i, key.key.id());
-    });
+    return change_far(transfers, buffers, plan.sorted, begin, count,
+                      [](SortedKey& key, std::uint32_t i) { key.again = numbered(i, key.key.id()); });
   }
   std::uint64_t place = begin;
   return sort_far<Layout>(

@@ -25,7 +25,7 @@ struct CodesStore {
 
   // Lines of vertices, each at its number modulo theirs, so that one that ends in the next line does so here too.
   alignas(128) std::byte lines[Layout::kCacheLines * kLineBytes];
-  std::byte lone[2][kCorners * kLoneBytes];                           // vertices that found no place there
+  std::byte lone[2][kCorners * kLoneBytes];  // vertices that found no place there
   alignas(128) std::byte indices[2][window_bytes<UVec3>(Layout::kIndexWindow)];
   alignas(128) VertexTriangle records[4][Layout::kChunkTriangles];
   alignas(128) TreeKey keys[Layout::kRunTriangles];
@@ -33,9 +33,9 @@ struct CodesStore {
   alignas(128) std::uint32_t samples[kMostRunSamples];
   alignas(128) RunPart part;
   alignas(128) std::byte vertex_parts[2 * window_bytes<CornerBox>(kPartWindow)];
-  std::uint32_t lines_held[Layout::kCacheLines];  // line + 1; 0: none
-  std::uint32_t line_users[Layout::kCacheLines];  // the last chunk that asked for it
-  std::uint32_t corners[2][kCorners];             // of a chunk's triangles: bytes from lines on
+  std::uint32_t lines_held[Layout::kCacheLines];   // line + 1; 0: none
+  std::uint32_t line_users[Layout::kCacheLines];   // the last chunk that asked for it
+  alignas(16) std::uint32_t corners[2][kCorners];  // of a chunk's triangles: bytes from lines on
   std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
 };
 
@@ -97,23 +97,33 @@ class RunCoder {
       GRIDIRON_TRY(get_indices(first, run_count, window + 1));
       GRIDIRON_TRY(transfers_.wait(static_cast<std::uint8_t>(kIndexTag + window % 2)));
     }
-    const auto* const indices = reinterpret_cast<const std::uint32_t*>(index_window(first, window).elements() +
-                                                                       begin % Layout::kIndexWindow);
+    const auto* const indices =
+        reinterpret_cast<const std::uint32_t*>(index_window(first, window).elements() + begin % Layout::kIndexWindow);
     std::uint32_t* const corners = store_.corners[chunk % 2];
     const std::uint32_t vertex_count = plan_.input.vertex_count;
     transfers_.add_work(BuildWork::kCorner, 3 * count);
-    for (std::uint32_t i = 0; i < 3 * count; ++i) {
-      const std::uint32_t index = indices[i];
-      if (index >= vertex_count) return Status::kBadIndex;
-      const std::uint32_t word = index * kVertexWords, line = word / kLineWords, slot = line % kLines;
-      const std::uint32_t place = word % (kLines * kLineWords) * 4;
-      // Of those that end in the next line one in eleven is not here whole.
-      if (store_.lines_held[slot] == line + 1 && word % kLineWords <= kLineWords - kVertexWords) {
-        store_.line_users[slot] = clock_;
-        corners[i] = place;
-        continue;
+    using L = Lanes<4>;
+    for (std::uint32_t i = 0; i < 3 * count; i += 4) {
+      const L::Int index = L::Int::load(indices + i);
+      const std::uint32_t rest = 3 * count - i, there = rest < 4 ? (1u << rest) - 1u : 15u;
+      if (((index < L::Int::splat(vertex_count)).bits() & ~L::sign_bits(index) & there) != there) {
+        return Status::kBadIndex;
       }
-      GRIDIRON_TRY(ask_for(index, chunk, i));
+      const L::Int words = (index << 1) + index, lines = words >> 5;
+      static_assert(kVertexWords == 3 && kLineWords == 32);
+      // Of those that end in the next line none is taken to be here.
+      const std::uint32_t inner =
+          ((words & L::Int::splat(kLineWords - 1)) < L::Int::splat(kLineWords - kVertexWords + 1)).bits();
+      ((words & L::Int::splat(kLines * kLineWords - 1)) << 2).store(corners + i);
+      for (std::uint32_t k = 0; k < 4 && k < rest; ++k) {
+        const auto line = static_cast<std::uint32_t>(lines[static_cast<int>(k)]);
+        const std::uint32_t slot = line % kLines;
+        if (store_.lines_held[slot] == line + 1 && (inner >> k & 1u) != 0) {
+          store_.line_users[slot] = clock_;
+        } else {
+          GRIDIRON_TRY(ask_for(indices[i + k], chunk, i + k));
+        }
+      }
     }
     return Status::kOk;
   }
@@ -224,8 +234,7 @@ class RunCoder {
       same &= store_.keys[i].code();
     }
     const bool is_in_spare = sort_run<Layout::kDigitBits, 1>(
-        store_.keys, store_.spare, kept_, static_cast<std::uint32_t>(width_of(all & ~same)), store_.counts,
-        transfers_);
+        store_.keys, store_.spare, kept_, static_cast<std::uint32_t>(width_of(all & ~same)), store_.counts, transfers_);
     const TreeKey* const sorted = is_in_spare ? store_.spare : store_.keys;
     if (kept_ > 0) {
       GRIDIRON_TRY(transfers_.put(sorted, plan_.run_keys.offset_by(std::uint64_t{run} * kRun * sizeof(TreeKey)),

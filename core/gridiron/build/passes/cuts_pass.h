@@ -66,8 +66,8 @@ template <class Layout, class P>
       }
       for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint64_t place = std::uint64_t{first + i} * plan.run_stride + first_run;
-        GRIDIRON_TRY(transfers.put(store.cuts[i], plan.cuts.offset_by(place * 4), sizeof store.cuts[i],
-                                   kFirstOutputTag));
+        GRIDIRON_TRY(
+            transfers.put(store.cuts[i], plan.cuts.offset_by(place * 4), sizeof store.cuts[i], kFirstOutputTag));
       }
     }
     return transfers.wait(kFirstOutputTag);

@@ -78,8 +78,9 @@ class TreeJoiner {
     return size.node_count > plan_.input.node_room ? Status::kMemoryTooSmall : Status::kOk;
   }
 
-  // Numbers the nodes of each level in the order of their triangles: buckets, and above them the nodes that begin in one
-  // or where one ends. A node that begins in a bucket reaches beyond it, so the bucket's nodes of its level are before it.
+  // Numbers the nodes of each level in the order of their triangles: buckets, and above them the nodes that begin in
+  // one or where one ends. A node that begins in a bucket reaches beyond it, so the bucket's nodes of its level are
+  // before it.
   [[nodiscard]] Status number_nodes() {
     std::uint32_t next_top = 0;
     const auto number_tops = [&](std::uint32_t end) -> Status {
@@ -139,7 +140,8 @@ class TreeJoiner {
       return *reinterpret_cast<const Piece*>(store_.pieces[i] + from.children[i] % 2 * 16);
     };
     const auto first_window = [&](const Piece& piece, std::uint32_t i) {
-      return Window<std::uint32_t>(store_.numbers[i], plan_.level_firsts, std::uint64_t{piece.bucket} * 16 + piece.depth - 1);
+      return Window<std::uint32_t>(store_.numbers[i], plan_.level_firsts,
+                                   std::uint64_t{piece.bucket} * 16 + piece.depth - 1);
     };
     for (std::uint32_t i = 0; i < from.child_count; ++i) {
       if ((from.children[i] & TopNode::kTop) != 0 || piece_of(i).depth == 0) continue;
@@ -169,7 +171,8 @@ class TreeJoiner {
       densities[i] = density_of(result.area, is_leaf, boxes[i]);
     }
     store_child_boxes(boxes, node);
-    node.order = plan_.input.order == TreeOrder::kForAnyHit ? order_of(densities, from.child_count) : kTreeOrderByNumber;
+    node.order =
+        plan_.input.order == TreeOrder::kForAnyHit ? order_of(densities, from.child_count) : kTreeOrderByNumber;
     node.child_count = from.child_count;
     for (std::uint32_t& word : node.reserved) word = 0;
     GRIDIRON_TRY(transfers_.put(&node, plan_.input.nodes.offset_by(std::uint64_t{from.number} * sizeof(TreeNode)),
@@ -224,8 +227,8 @@ template <class P>
                                sizeof(LevelCounts), kSetupTag));
     GRIDIRON_TRY(transfers.get(&store.firsts, plan.level_firsts.offset_by(bucket * sizeof(LevelCounts)),
                                sizeof(LevelCounts), kSetupTag));
-    GRIDIRON_TRY(transfers.get(&head, plan.buckets.offset_by(bucket * sizeof(SubtreeBucket)), sizeof(SubtreeBucket),
-                               kSetupTag));
+    GRIDIRON_TRY(
+        transfers.get(&head, plan.buckets.offset_by(bucket * sizeof(SubtreeBucket)), sizeof(SubtreeBucket), kSetupTag));
     GRIDIRON_TRY(transfers.wait(kSetupTag));
     std::uint32_t count = 0;
     for (std::uint32_t level = 0; level < kMaxTreeDepth; ++level) count += store.counts.of[level];

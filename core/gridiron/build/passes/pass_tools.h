@@ -37,8 +37,8 @@ class Window {
   template <class P>
   [[nodiscard]] Status get(Transfers<P>& transfers, std::uint32_t count, std::uint8_t tag) const {
     const std::uint64_t begin = address_ / kPortableGranuleBytes * kPortableGranuleBytes;
-    const std::uint64_t end =
-        (address_ + count * sizeof(Element) + kPortableGranuleBytes - 1) / kPortableGranuleBytes * kPortableGranuleBytes;
+    const std::uint64_t end = (address_ + count * sizeof(Element) + kPortableGranuleBytes - 1) / kPortableGranuleBytes *
+                              kPortableGranuleBytes;
     return transfers.get(buffer_ + begin % kPortableCongruenceBytes, MainAddress{begin},
                          static_cast<std::uint32_t>(end - begin), tag);
   }

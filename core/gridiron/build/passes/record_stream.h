@@ -67,35 +67,74 @@ class RecordStream {
   std::uint32_t pushed_ = 0, popped_ = 0, arrived_ = 0;  // counts
 };
 
-/// Calls take(record) for records whose ids are pushed, in order, as late as possible.
+/// Calls take(record) for records whose ids are pushed, in order, as late as possible. Ids that follow one another
+/// closely share a transfer.
 template <class P, class Take>
 class RecordTaker {
  public:
   RecordTaker(Transfers<P>& transfers, RecordRing& ring, MainAddress records, Take& take)
-      : stream_(transfers, ring, records), take_(take) {}
+      : transfers_(transfers), ring_(ring), records_(records), take_(take) {}
 
   [[nodiscard]] GRIDIRON_INLINE Status push(std::uint32_t id) {
-    if (stream_.is_full()) GRIDIRON_TRY(take_one());
-    ids_[back_++ % RecordRing::kSlots] = id;
-    return stream_.push(id);
+    transfers_.add_work(BuildWork::kAskedRecord);
+    Span& span = spans_[back_ % kSpans];
+    if (span.count > 0 && id - span.first < kSpan && span.count < kSpan) {
+      span.wanted[span.count++] = static_cast<std::uint8_t>(id - span.first);
+      span.last = id > span.last ? id : span.last;
+      return Status::kOk;
+    }
+    if (span.count > 0) GRIDIRON_TRY(close());
+    Span& next = spans_[back_ % kSpans];
+    next.first = next.last = id;
+    next.wanted[0] = 0;
+    next.count = 1;
+    return Status::kOk;
   }
-  [[nodiscard]] GRIDIRON_INLINE Status end() {
-    while (!stream_.is_empty()) GRIDIRON_TRY(take_one());
+  [[nodiscard]] Status end() {
+    if (spans_[back_ % kSpans].count > 0) GRIDIRON_TRY(close());
+    while (front_ != back_) GRIDIRON_TRY(take_front());
     return Status::kOk;
   }
 
  private:
-  [[nodiscard]] GRIDIRON_INLINE Status take_one() {
-    const VertexTriangle* record = nullptr;
-    GRIDIRON_TRY(stream_.pop(ids_[front_++ % RecordRing::kSlots], record));
-    take_(*record);
+  static constexpr std::uint32_t kSpans = 8, kSpan = 4;  // records that a transfer covers
+  static constexpr std::uint32_t kSpanBytes = RecordRing::kSlots / kSpans * RecordRing::kSlotBytes;
+  static_assert(kSpan * sizeof(VertexTriangle) + kPortableGranuleBytes <= kSpanBytes);
+  struct Span {
+    std::uint32_t first, last, count = 0;
+    std::uint8_t wanted[kSpan];  // from `first` on
+  };
+
+  [[nodiscard]] Window<VertexTriangle> window_of(std::uint32_t number) const {
+    return {ring_.slots + number % kSpans * kSpanBytes, records_, spans_[number % kSpans].first};
+  }
+  [[nodiscard]] static std::uint8_t tag_of(std::uint32_t number) {
+    return static_cast<std::uint8_t>(kFirstTriangleTag + number % kSpans);
+  }
+  // Asks for the last span, and makes room for the next one.
+  [[nodiscard]] Status close() {
+    const Span& span = spans_[back_ % kSpans];
+    GRIDIRON_TRY(window_of(back_).get(transfers_, span.last - span.first + 1, tag_of(back_)));
+    ++back_;
+    if (back_ - front_ == kSpans) GRIDIRON_TRY(take_front());
+    spans_[back_ % kSpans].count = 0;
+    return Status::kOk;
+  }
+  [[nodiscard]] Status take_front() {
+    const Span& span = spans_[front_ % kSpans];
+    GRIDIRON_TRY(transfers_.wait(tag_of(front_)));
+    const VertexTriangle* const records = window_of(front_).elements();
+    for (std::uint32_t i = 0; i < span.count; ++i) take_(records[span.wanted[i]]);
+    ++front_;
     return Status::kOk;
   }
 
-  RecordStream<P> stream_;
+  Transfers<P>& transfers_;
+  RecordRing& ring_;
+  MainAddress records_;
   Take& take_;
-  std::uint32_t ids_[RecordRing::kSlots];
-  std::uint32_t front_ = 0, back_ = 0;
+  Span spans_[kSpans];
+  std::uint32_t front_ = 0, back_ = 0;  // numbers of spans; the last one grows
 };
 
 }  // namespace gridiron

@@ -37,14 +37,14 @@ class BucketSorter {
   [[nodiscard]] Status sort(std::uint32_t bucket) {
     // Where the bucket lies among all keys, and how many it has.
     std::uint64_t before = 0, through = 0;
-    GRIDIRON_TRY(each_cuts(bucket, [&](const std::uint32_t* begins, const std::uint32_t* ends, std::uint32_t,
-                                       std::uint32_t count) {
-      for (std::uint32_t i = 0; i < count; ++i) {
-        before += begins[i];
-        through += ends[i];
-      }
-      return Status::kOk;
-    }));
+    GRIDIRON_TRY(each_cuts(
+        bucket, [&](const std::uint32_t* begins, const std::uint32_t* ends, std::uint32_t, std::uint32_t count) {
+          for (std::uint32_t i = 0; i < count; ++i) {
+            before += begins[i];
+            through += ends[i];
+          }
+          return Status::kOk;
+        }));
     const auto count = static_cast<std::uint32_t>(through - before);
     const auto first = static_cast<std::uint32_t>(before);
     if (count == 0) return Status::kOk;
@@ -59,8 +59,7 @@ class BucketSorter {
       return Status::kOk;
     }));
     const auto differing = static_cast<std::uint32_t>(width_of(all & ~same));
-    if (sort_run<Layout::kDigitBits, 2>(&keys->key, &keys->again, count, differing, store_.counts,
-                                        transfers_)) {
+    if (sort_run<Layout::kDigitBits, 2>(&keys->key, &keys->again, count, differing, store_.counts, transfers_)) {
       for (std::uint32_t i = 0; i < count; ++i) keys[i].key = keys[i].again;
     }
     GRIDIRON_TRY(code_crowded(keys, count));
@@ -97,43 +96,45 @@ class BucketSorter {
   // Calls visit(key) for the keys of a bucket, run by run, their transfers ahead.
   template <class Visit>
   [[nodiscard]] Status each_key(std::uint32_t bucket, Visit&& visit) {
-    return each_cuts(bucket, [&](const std::uint32_t* begins, const std::uint32_t* ends, std::uint32_t first_run,
-                                 std::uint32_t count) -> Status {
-      std::uint64_t firsts[kPieces];
-      std::uint32_t sizes[kPieces];
-      std::uint32_t asked = 0, taken = 0;  // pieces
-      std::uint32_t run = 0, at = count > 0 ? begins[0] : std::uint32_t{0};
-      const auto window_of = [&](std::uint32_t piece) {
-        return Window<TreeKey>(store_.pieces[piece % kPieces], plan_.run_keys, firsts[piece % kPieces]);
-      };
-      const auto tag_of = [](std::uint32_t piece) {
-        return static_cast<std::uint8_t>(kFirstMacroTag + piece % kPieces);
-      };
-      while (run < count || taken < asked) {
-        if (run < count && asked - taken < kPieces) {
-          const std::uint32_t rest = ends[run] - at, size = rest < kPieceKeys ? rest : kPieceKeys;
-          if (size > 0) {
-            firsts[asked % kPieces] = std::uint64_t{first_run + run} * Layout::kRunTriangles + at;
-            sizes[asked % kPieces] = size;
-            GRIDIRON_TRY(window_of(asked).get(transfers_, size, tag_of(asked)));
-            ++asked;
-            at += size;
-          }
-          if (at == ends[run]) {
-            ++run;
-            at = run < count ? begins[run] : std::uint32_t{0};
-          }
-          continue;
-        }
-        GRIDIRON_TRY(transfers_.wait(tag_of(taken)));
-        const TreeKey* const keys = window_of(taken).elements();
-        const std::uint32_t size = sizes[taken % kPieces];
-        transfers_.add_work(BuildWork::kGatheredKey, size);
-        for (std::uint32_t i = 0; i < size; ++i) GRIDIRON_TRY(visit(keys[i]));
-        ++taken;
-      }
-      return Status::kOk;
-    });
+    return each_cuts(bucket,
+                     [&](const std::uint32_t* begins, const std::uint32_t* ends, std::uint32_t first_run,
+                         std::uint32_t count) -> Status {
+                       std::uint64_t firsts[kPieces];
+                       std::uint32_t sizes[kPieces];
+                       std::uint32_t asked = 0, taken = 0;  // pieces
+                       std::uint32_t run = 0, at = count > 0 ? begins[0] : std::uint32_t{0};
+                       const auto window_of = [&](std::uint32_t piece) {
+                         return Window<TreeKey>(store_.pieces[piece % kPieces], plan_.run_keys,
+                                                firsts[piece % kPieces]);
+                       };
+                       const auto tag_of = [](std::uint32_t piece) {
+                         return static_cast<std::uint8_t>(kFirstMacroTag + piece % kPieces);
+                       };
+                       while (run < count || taken < asked) {
+                         if (run < count && asked - taken < kPieces) {
+                           const std::uint32_t rest = ends[run] - at, size = rest < kPieceKeys ? rest : kPieceKeys;
+                           if (size > 0) {
+                             firsts[asked % kPieces] = std::uint64_t{first_run + run} * Layout::kRunTriangles + at;
+                             sizes[asked % kPieces] = size;
+                             GRIDIRON_TRY(window_of(asked).get(transfers_, size, tag_of(asked)));
+                             ++asked;
+                             at += size;
+                           }
+                           if (at == ends[run]) {
+                             ++run;
+                             at = run < count ? begins[run] : std::uint32_t{0};
+                           }
+                           continue;
+                         }
+                         GRIDIRON_TRY(transfers_.wait(tag_of(taken)));
+                         const TreeKey* const keys = window_of(taken).elements();
+                         const std::uint32_t size = sizes[taken % kPieces];
+                         transfers_.add_work(BuildWork::kGatheredKey, size);
+                         for (std::uint32_t i = 0; i < size; ++i) GRIDIRON_TRY(visit(keys[i]));
+                         ++taken;
+                       }
+                       return Status::kOk;
+                     });
   }
 
   // Codes keys again where more than kFewTreeTriangles have one code.
@@ -170,9 +171,7 @@ class BucketSorter {
     std::uint64_t place = first;
     GRIDIRON_TRY((sort_far<Layout>(
         transfers_, count, 0, store_.keys, store_.counts,
-        [&](auto&& visit) {
-          return each_key(bucket, [&](TreeKey key) { return visit(key.code(), key.id()); });
-        },
+        [&](auto&& visit) { return each_key(bucket, [&](TreeKey key) { return visit(key.code(), key.id()); }); },
         [&](const SortedKey* share, std::uint32_t n) -> Status {
           const std::uint64_t at = place;
           place += n;
@@ -182,8 +181,8 @@ class BucketSorter {
     std::uint32_t begin = first, at = first, code = 0;
     const auto end_crowd = [&]() -> Status {
       if (at - begin <= kFewTreeTriangles) return Status::kOk;
-      GRIDIRON_TRY((code_again_far<Layout>(transfers_, store_.ring, store_.far, plan_, begin, at, store_.keys,
-                                           store_.counts)));
+      GRIDIRON_TRY(
+          (code_again_far<Layout>(transfers_, store_.ring, store_.far, plan_, begin, at, store_.keys, store_.counts)));
       const auto mark = [](SortedKey& key, std::uint32_t) { key.again.bits |= kCrowdEnd; };
       GRIDIRON_TRY(change_far(transfers_, store_.far, plan_.sorted, begin, 1, mark));
       return change_far(transfers_, store_.far, plan_.sorted, at - 1, 1, mark);

@@ -1,6 +1,6 @@
-// Seventh pass of a build: makes each piece's leaves and nodes, and writes records and nodes. Nodes are not numbered yet:
-// a node names its children by their place among those of their level in the bucket.
-// Memory: the pass's store. Threads: one core. SPDX-License-Identifier: Apache-2.0
+// Seventh pass of a build: makes each piece's leaves and nodes, and writes records and nodes. Nodes are not numbered
+// yet: a node names its children by their place among those of their level in the bucket. Memory: the pass's store.
+// Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/build/passes/build_plan.h>
@@ -17,10 +17,10 @@ namespace gridiron {
 
 template <class Layout>
 struct SubtreesStore {
-  static constexpr std::uint32_t kEvents = 32;      // leaves and ends of nodes that wait for their triangles
+  static constexpr std::uint32_t kEvents = 32;  // leaves and ends of nodes that wait for their triangles
   static constexpr std::uint32_t kRecords = Layout::kBucketKeys < 4096 ? 16 : 32;  // sent at once
-  static constexpr std::uint32_t kNodes = 4;        // on their way
-  static constexpr std::uint32_t kResults = 4;      // of pieces, on their way
+  static constexpr std::uint32_t kNodes = 4;                                       // on their way
+  static constexpr std::uint32_t kResults = 4;                                     // of pieces, on their way
 
   // A range that is split, and which of its children is next.
   struct Level {
@@ -281,7 +281,8 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     for (std::uint32_t& word : node.reserved) word = 0;
     node.reserved[0] = slot / Layout::kNodeLag;
     node.reserved[1] = open_node.index;
-    GRIDIRON_TRY(transfers_.put(&node, plan_.raw_nodes.offset_by(raw_node_++ * sizeof(TreeNode)), sizeof(TreeNode), tag));
+    GRIDIRON_TRY(
+        transfers_.put(&node, plan_.raw_nodes.offset_by(raw_node_++ * sizeof(TreeNode)), sizeof(TreeNode), tag));
     open_node.is_open = false;
     return deliver(open_node.parent, open_node.child, QuadBox::of_node(node), total, open_node.index);
   }

@@ -11,9 +11,9 @@ namespace gridiron {
 
 template <class Layout>
 struct TopStore {
-  static constexpr std::uint32_t kLineKeys = 8;  // of a line of main memory
+  static constexpr std::uint32_t kLineKeys = 8;                                  // of a line of main memory
   static constexpr std::uint32_t kLines = Layout::kBucketKeys < 4096 ? 16 : 64;  // a power of two
-  static constexpr std::uint32_t kPieces = 16, kBuckets = 16;  // sent at once
+  static constexpr std::uint32_t kPieces = 16, kBuckets = 16;                    // sent at once
 
   struct Level {
     TreeRange ranges[kTreeWidth];
@@ -31,8 +31,8 @@ struct TopStore {
   alignas(128) FarBuffers far;
   RecordRing ring;
   Level levels[kMaxTreeDepth];
-  std::uint32_t line_held[kLines];               // line + 1; 0: none
-  std::uint32_t samples[Layout::kTopSamples];    // codes of keys at equal distances
+  std::uint32_t line_held[kLines];             // line + 1; 0: none
+  std::uint32_t samples[Layout::kTopSamples];  // codes of keys at equal distances
   std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
 };
 
@@ -113,8 +113,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
   }
 
   [[nodiscard]] Status add_piece(std::uint32_t begin, std::uint32_t end, std::uint32_t depth) {
-    if (bucket_.piece_count > 0 &&
-        (end - bucket_.begin > plan_.piece_limit || bucket_.piece_count == kBucketPieces)) {
+    if (bucket_.piece_count > 0 && (end - bucket_.begin > plan_.piece_limit || bucket_.piece_count == kBucketPieces)) {
       GRIDIRON_TRY(end_bucket());
     }
     if (bucket_.piece_count == 0) bucket_ = {piece_count_, 0, begin, end};
@@ -160,19 +159,33 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
   [[nodiscard]] SortedKey key_at(std::uint32_t i) const {
     constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys;
     const std::uint32_t line = i / kLineKeys, slot = line % TopStore<Layout>::kLines;
-    if (store_.line_held[slot] != line + 1) fetch_line(line, slot);
+    if (store_.line_held[slot] != line + 1) fetch_line(line);
     return store_.lines[slot][i % kLineKeys];
   }
-  GRIDIRON_OUTLINE void fetch_line(std::uint32_t line, std::uint32_t slot) const {
-    constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys;
-    const std::uint32_t left = whole_count() - line * kLineKeys;
-    Status status = transfers_.get(store_.lines[slot],
-                                   plan_.sorted.offset_by(std::uint64_t{line} * kLineKeys * sizeof(SortedKey)),
-                                   (left < kLineKeys ? left : kLineKeys) * static_cast<std::uint32_t>(sizeof(SortedKey)),
-                                   kSetupTag);
+  GRIDIRON_OUTLINE void fetch_line(std::uint32_t line) const {
+    Status status = get_line(line);
     if (status == Status::kOk) status = transfers_.wait(kSetupTag);
     if (status != Status::kOk) status_ = status;
-    store_.line_held[slot] = line + 1;
+  }
+  [[nodiscard]] Status get_line(std::uint32_t line) const {
+    constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys, kLines = TopStore<Layout>::kLines;
+    const std::uint32_t left = whole_count() - line * kLineKeys;
+    store_.line_held[line % kLines] = line + 1;
+    return transfers_.get(
+        store_.lines[line % kLines], plan_.sorted.offset_by(std::uint64_t{line} * kLineKeys * sizeof(SortedKey)),
+        (left < kLineKeys ? left : kLineKeys) * static_cast<std::uint32_t>(sizeof(SortedKey)), kSetupTag);
+  }
+
+  // Keys, so close to one another that they are fetched at once.
+  static constexpr std::uint32_t kGap = TopStore<Layout>::kLines / 2 * TopStore<Layout>::kLineKeys;
+  void fetch_lines(std::uint32_t first, std::uint32_t last) const {
+    constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys, kLines = TopStore<Layout>::kLines;
+    Status status = Status::kOk;
+    for (std::uint32_t line = first / kLineKeys; line <= last / kLineKeys && status == Status::kOk; ++line) {
+      if (store_.line_held[line % kLines] != line + 1) status = get_line(line);
+    }
+    if (status == Status::kOk) status = transfers_.wait(kSetupTag);
+    if (status != Status::kOk) status_ = status;
   }
 
   // Codes of keys at equal distances, to find the middle of a range without fetching keys from all over it.
@@ -208,24 +221,23 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
       size -= half;
     }
     const std::uint32_t before = (low - 1) * sample_step_, after = low * sample_step_ + 1;
-    return this->first_like_last(before > part.begin ? before : part.begin, after < part.end ? after : part.end, first,
-                                 last);
+    const std::uint32_t begin = before > part.begin ? before : part.begin, end = after < part.end ? after : part.end;
+    if (end - begin <= kGap) fetch_lines(begin, end - 1);
+    return this->first_like_last(begin, end, first, last);
   }
 
   // Equal keys of many triangles have their next codes beside them, if the range has all that are equal.
   [[nodiscard]] Status code_again(std::uint32_t begin, std::uint32_t end) {
     const std::uint32_t count = end - begin;
     if (count <= kFewTreeTriangles) {
-      GRIDIRON_TRY(change_far(transfers_, store_.far, plan_.sorted, begin, count, [](SortedKey& key, std::uint32_t i) {
-        key.key = numbered(i, key.key.id());
-      }));
+      GRIDIRON_TRY(change_far(transfers_, store_.far, plan_.sorted, begin, count,
+                              [](SortedKey& key, std::uint32_t i) { key.key = numbered(i, key.key.id()); }));
     } else {
       if (!is_crowd(key_at(begin), key_at(end - 1))) {
         GRIDIRON_TRY((code_again_far<Layout>(transfers_, store_.ring, store_.far, plan_, begin, end, store_.keys,
                                              store_.counts)));
       }
-      GRIDIRON_TRY(change_far(transfers_, reinterpret_cast<std::byte*>(store_.keys), Layout::kBucketKeys - 3, plan_.sorted,
-                              begin, count, [](SortedKey& key, std::uint32_t) { key.key = again_of(key); }));
+      GRIDIRON_TRY(take_again(begin, count));
     }
     // What is held here is out of date.
     for (std::uint32_t i = 0; i < TopStore<Layout>::kLines; ++i) store_.line_held[i] = 0;
@@ -233,6 +245,36 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
       store_.samples[i] = code_of(i * sample_step_);
     }
     return status_;
+  }
+
+  // Puts the next codes of keys in the place of the first ones, their transfers before and behind.
+  [[nodiscard]] Status take_again(std::uint32_t begin, std::uint32_t count) {
+    constexpr std::uint32_t kShares = 4, kKeys = Layout::kBucketKeys / kShares / 2 * 2 - 4;
+    const auto window_of = [&](std::uint32_t share) {
+      auto* const buffer = reinterpret_cast<std::byte*>(store_.keys + share % kShares * (kKeys + 4));
+      return Window<SortedKey>(buffer, plan_.sorted, std::uint64_t{begin} + share * kKeys);
+    };
+    const auto count_of = [count](std::uint32_t share) {
+      return count - share * kKeys < kKeys ? count - share * kKeys : kKeys;
+    };
+    const auto tag_of = [](std::uint32_t share) {
+      return static_cast<std::uint8_t>(kFirstTriangleTag + share % kShares);
+    };
+    const std::uint32_t shares = (count + kKeys - 1) / kKeys;
+    for (std::uint32_t i = 0; i < shares + 2; ++i) {
+      if (i < shares) {
+        GRIDIRON_TRY(transfers_.wait(tag_of(i)));  // what was put from there
+        GRIDIRON_TRY(window_of(i).get(transfers_, count_of(i), tag_of(i)));
+      }
+      if (i < 2) continue;
+      const std::uint32_t share = i - 2;
+      GRIDIRON_TRY(transfers_.wait(tag_of(share)));
+      SortedKey* const keys = window_of(share).elements();
+      transfers_.add_work(BuildWork::kGatheredKey, count_of(share));
+      for (std::uint32_t k = 0; k < count_of(share); ++k) keys[k].key = again_of(keys[k]);
+      GRIDIRON_TRY(window_of(share).put(transfers_, count_of(share), tag_of(share)));
+    }
+    return wait_for(transfers_, kFirstTriangleTag, kShares);
   }
 
   Transfers<P>& transfers_;

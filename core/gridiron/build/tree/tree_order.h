@@ -27,8 +27,9 @@ inline constexpr float kTreeLeafDensity = 1.5f;
 
 /// @returns twice the areas of four triangles, bit by bit what area_of() gives for each.
 [[nodiscard]] GRIDIRON_INLINE CornerQuad areas_of(const FourTriangles& triangles) {
-  const auto difference = [](const QuadRows& p, const QuadRows& q)
-                              GRIDIRON_INLINE_LAMBDA { return QuadRows{p.x - q.x, p.y - q.y, p.z - q.z}; };
+  const auto difference = [](const QuadRows& p, const QuadRows& q) GRIDIRON_INLINE_LAMBDA {
+    return QuadRows{p.x - q.x, p.y - q.y, p.z - q.z};
+  };
   const QuadRows e = difference(triangles.b, triangles.a), f = difference(triangles.c, triangles.a);
   const CornerQuad x = e.y * f.z - e.z * f.y, y = e.z * f.x - e.x * f.z, z = e.x * f.y - e.y * f.x;
   return Lanes<4>::square_root(x * x + y * y + z * z);
