@@ -3,6 +3,7 @@
 // Memory: std::vector and the simulated main memory. Threads: starts some. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/passes/build_passes.h>
 #include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/sim/build_pass_work.h>
 #include <gridiron/sim/passes.h>
 
 #include "support/ply_load.h"
@@ -117,7 +118,8 @@ Built built_by_cores(const TestMesh& mesh, std::uint32_t leaf_triangles, TreeOrd
                       .items = {.most = plan.item_counts[i]},
                       .data_bytes = sizeof(BuildStore<Layout>),
                       .writable = writable,
-                      .kernel = sim::PassKernel(kernel)});
+                      .kernel = sim::PassKernel(kernel),
+                      .engine = &sim::kBuildPassesWork});
   }
   sim::ChipOptions options;
   options.mode = way.mode;
