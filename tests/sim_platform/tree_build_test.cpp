@@ -82,7 +82,9 @@ Built built_by_cores(const TestMesh& mesh, std::uint32_t leaf_triangles, TreeOrd
   input.node_room = way.node_room.value_or(static_cast<std::uint32_t>(most_tree_nodes(count, leaf_triangles)));
   const std::uint64_t scratch_bytes = build_scratch_bytes<Layout>(input);
   sim::SimMemory memory(scratch_bytes + 16 * mesh.vertices.size() + 64 * count + 512ull * input.node_room + (1u << 20));
-  const auto place = [&memory](std::uint64_t bytes) { return memory.allocate(std::max<std::uint64_t>(bytes, 128)).value(); };
+  const auto place = [&memory](std::uint64_t bytes) {
+    return memory.allocate(std::max<std::uint64_t>(bytes, 128)).value();
+  };
   const auto vertices = place(12 * mesh.vertices.size() + 16), triangles = place(12 * count + 16);
   const auto records = place(sizeof(VertexTriangle) * count), nodes = place(sizeof(TreeNode) * input.node_room);
   const auto result = place(sizeof(BuildResult)), scratch = place(scratch_bytes);

@@ -67,9 +67,6 @@ class Transfers {
     return Status::kOk;
   }
 
-  /// Counts so many more of a kind of work.
-  GRIDIRON_INLINE void add_work(WorkId kind, std::uint32_t amount = 1) { work_.add(kind, amount); }
-
   /// Waits for every transfer of a tag.
   [[nodiscard]] Status wait(std::uint8_t tag) {
     work_.add(Work::kWait);

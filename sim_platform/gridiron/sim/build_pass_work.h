@@ -19,7 +19,8 @@ inline constexpr WorkKind kBuildPassKinds[] = {
     {BuildWork::kSortCount, "sort_count"}, {BuildWork::kMovedKey, "moved_key"},
     {BuildWork::kExchangedKey, "exchanged_key"}, {BuildWork::kCut, "cut"}, {BuildWork::kGatheredKey, "gathered_key"},
     {BuildWork::kMiddleGroup, "middle_group"}, {BuildWork::kAgainGroup, "again_group"},
-    {BuildWork::kAskedRecord, "asked_record"}, {BuildWork::kTakenRecord, "taken_record"}, {BuildWork::kLeaf, "built_leaf"},
+    {BuildWork::kAskedRecord, "asked_record"}, {BuildWork::kTakenRecord, "taken_record"},
+    {BuildWork::kLeaf, "built_leaf"},
     {BuildWork::kPart, "part"}, {BuildWork::kWeighedPart, "weighed_part"}, {BuildWork::kSearchStep, "search_step"},
     {BuildWork::kNode, "built_node"}, {BuildWork::kNumberedNode, "numbered_node"}};
 

@@ -15,7 +15,7 @@ struct BoundsStore {
 
 /// Writes vertex_parts. Items: vertex_items. Errors: kBadVertex.
 template <class P>
-[[nodiscard]] Status run_bounds_pass(Transfers<P>& transfers, BoundsStore& store, const BuildPlan& plan) {
+[[nodiscard]] Status run_bounds_pass(BuildTransfers<P>& transfers, BoundsStore& store, const BuildPlan& plan) {
   const auto bound = [&](std::uint32_t item) -> Status {
     const std::uint64_t first = std::uint64_t{item} * kVertexItem;
     const std::uint64_t rest = plan.input.vertex_count - first;

@@ -27,7 +27,7 @@ class WordWriter {
  public:
   static constexpr std::uint32_t kWindow = 128;  // words
   /// @param buffers  two. @param tag  and the next one are used. @param address  a multiple of kLineBytes.
-  WordWriter(Transfers<P>& transfers, std::uint32_t (*buffers)[kWindow], MainAddress address, std::uint8_t tag)
+  WordWriter(BuildTransfers<P>& transfers, std::uint32_t (*buffers)[kWindow], MainAddress address, std::uint8_t tag)
       : transfers_(transfers), buffers_(buffers), address_(address), tag_(tag) {}
 
   [[nodiscard]] Status write(std::uint32_t word) {
@@ -50,7 +50,7 @@ class WordWriter {
     return transfers_.wait(static_cast<std::uint8_t>(tag_ + side_));
   }
 
-  Transfers<P>& transfers_;
+  BuildTransfers<P>& transfers_;
   std::uint32_t (*buffers_)[kWindow];
   MainAddress address_;
   std::uint8_t tag_;
@@ -60,7 +60,8 @@ class WordWriter {
 /// Writes state and splitters: of bucket i the least code, of those behind the last kNoSample. Items: one.
 /// Errors: kNoTriangles, kMemoryTooSmall.
 template <class Layout, class P>
-[[nodiscard]] Status run_buckets_pass(Transfers<P>& transfers, BucketsStore<Layout>& store, const BuildPlan& plan) {
+[[nodiscard]] Status run_buckets_pass(BuildTransfers<P>& transfers, BucketsStore<Layout>& store,
+                                      const BuildPlan& plan) {
   const auto sum_up = [&]() -> Status {
     FourBoxes bounds = FourBoxes::none();
     std::uint32_t count = 0;

@@ -49,7 +49,7 @@ static_assert(sizeof(BuildStore<BuildLayout64K>) <= kBuildRoomBytes<BuildLayout6
 template <class P, class Layout>
 [[nodiscard]] Status run_build_pass(P& platform, BuildStore<Layout>& store, const BuildPlan& plan, BuildPass pass) {
   store.work = {};
-  Transfers<P> transfers(platform, store.work);
+  BuildTransfers<P> transfers(platform, store.work);
   switch (pass) {
     case BuildPass::kBounds:
       return run_bounds_pass(transfers, store.bounds, plan);

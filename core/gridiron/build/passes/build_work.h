@@ -1,8 +1,11 @@
-// Kinds of work that only the passes of a build have. Memory: none. Threads: any.
+// Kinds of work that only the passes of a build have, and transfers that count them. Memory: none. Threads: any.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/lanes.h>
 #include <gridiron/base/work_counters.h>
+#include <gridiron/dma/transfers.h>
+#include <gridiron/platform/contract.h>
 
 #include <cstdint>
 
@@ -34,5 +37,18 @@ enum class BuildWork : std::uint8_t {
   kEnd
 };
 static_assert(static_cast<std::uint32_t>(BuildWork::kEnd) <= kWorkKindCount);
+
+/// A core's transfers, and the work between them.
+template <Platform P>
+class BuildTransfers : public Transfers<P> {
+ public:
+  BuildTransfers(P& platform, WorkCounters& work) : Transfers<P>(platform, work), counters_(work) {}
+
+  /// Counts so many more of a kind of work.
+  GRIDIRON_INLINE void add_work(WorkId kind, std::uint32_t amount = 1) { counters_.add(kind, amount); }
+
+ private:
+  WorkCounters& counters_;
+};
 
 }  // namespace gridiron

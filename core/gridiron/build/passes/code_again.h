@@ -42,8 +42,8 @@ class BoxQuads {
 
 /// Calls use(boxes, ids, count) for triangles in fours. @param each_id  each_id(push) calls push(id) for all of them.
 template <class P, class EachId, class Use>
-[[nodiscard]] Status for_each_boxes(Transfers<P>& transfers, RecordRing& ring, MainAddress records, EachId&& each_id,
-                                    Use&& use) {
+[[nodiscard]] Status for_each_boxes(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records,
+                                    EachId&& each_id, Use&& use) {
   BoxQuads<Use> quads(use);
   RecordTaker<P, BoxQuads<Use>> taker(transfers, ring, records, quads);
   const auto push = [&taker](std::uint32_t id) GRIDIRON_INLINE_LAMBDA { return taker.push(id); };
@@ -55,7 +55,7 @@ template <class P, class EachId, class Use>
 
 /// The range of triangles' middles.
 template <class P, class EachId>
-[[nodiscard]] Status find_middles(Transfers<P>& transfers, RecordRing& ring, MainAddress records, EachId&& each_id,
+[[nodiscard]] Status find_middles(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records, EachId&& each_id,
                                   QuadBox& range) {
   FourBoxes middles = FourBoxes::none();
   const auto add = [&middles, &transfers](const FourBoxes& boxes, const std::uint32_t*,
@@ -71,7 +71,7 @@ template <class P, class EachId>
 
 /// Calls use(code, id) for triangles with their codes on a lattice, without kTreeCodedAgain. use() -> Status.
 template <class P, class EachId, class Use>
-[[nodiscard]] Status for_each_code(Transfers<P>& transfers, RecordRing& ring, MainAddress records,
+[[nodiscard]] Status for_each_code(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records,
                                    const TreeCurve& curve, EachId&& each_id, Use&& use) {
   Status status = Status::kOk;
   const auto code = [&](const FourBoxes& boxes, const std::uint32_t* ids, std::uint32_t count) GRIDIRON_INLINE_LAMBDA {
@@ -91,7 +91,7 @@ inline constexpr std::uint32_t kFewRunKeys = 512;
 /// Codes triangles again in the store. @param keys  `key` of each has the id of its triangle, in order; gets the new
 /// one. `again` is lost.
 template <class Layout, class P>
-[[nodiscard]] Status code_again(Transfers<P>& transfers, RecordRing& ring, MainAddress records, SortedKey* keys,
+[[nodiscard]] Status code_again(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records, SortedKey* keys,
                                 std::uint32_t count, std::uint32_t* counts) {
   const auto number = [&] {
     for (std::uint32_t i = 0; i < count; ++i) keys[i].key = numbered(i, keys[i].key.id());
@@ -133,7 +133,7 @@ template <class Layout, class P>
 /// @param emit   emit(keys, count) -> Status takes sorted keys, `key` of each.
 /// @param keys   Layout::kBucketKeys.
 template <class Layout, class P, class Each, class Emit>
-[[nodiscard]] Status sort_far(Transfers<P>& transfers, std::uint32_t count, std::uint32_t flag, SortedKey* keys,
+[[nodiscard]] Status sort_far(BuildTransfers<P>& transfers, std::uint32_t count, std::uint32_t flag, SortedKey* keys,
                               std::uint32_t* counts, Each&& each, Emit&& emit) {
   constexpr std::uint32_t kDigit = Layout::kDigitBits, kValues = 1u << kDigit, kRoom = Layout::kBucketKeys;
   std::uint32_t low = 0;  // codes below are done
@@ -205,7 +205,7 @@ struct FarBuffers {
 /// Changes sorted keys [first, first + count) in main memory. @param change  change(key, number from first on).
 /// @param buffer  of window_bytes<SortedKey>(room).
 template <class P, class Change>
-[[nodiscard]] Status change_far(Transfers<P>& transfers, std::byte* buffer, std::uint32_t room, MainAddress sorted,
+[[nodiscard]] Status change_far(BuildTransfers<P>& transfers, std::byte* buffer, std::uint32_t room, MainAddress sorted,
                                 std::uint64_t first, std::uint32_t count, Change&& change) {
   for (std::uint32_t at = 0; at < count; at += room) {
     const std::uint32_t n = count - at < room ? count - at : room;
@@ -220,15 +220,15 @@ template <class P, class Change>
   return Status::kOk;
 }
 template <class P, class Change>
-[[nodiscard]] Status change_far(Transfers<P>& transfers, FarBuffers& buffers, MainAddress sorted, std::uint64_t first,
-                                std::uint32_t count, Change&& change) {
+[[nodiscard]] Status change_far(BuildTransfers<P>& transfers, FarBuffers& buffers, MainAddress sorted,
+                                std::uint64_t first, std::uint32_t count, Change&& change) {
   return change_far(transfers, buffers.written, FarBuffers::kKeys, sorted, first, count, change);
 }
 
 /// Writes `again` of sorted keys [begin, end) that have one code, in main memory.
 /// @param keys  Layout::kBucketKeys, whose contents are lost.
 template <class Layout, class P>
-[[nodiscard]] Status code_again_far(Transfers<P>& transfers, RecordRing& ring, FarBuffers& buffers,
+[[nodiscard]] Status code_again_far(BuildTransfers<P>& transfers, RecordRing& ring, FarBuffers& buffers,
                                     const BuildPlan& plan, std::uint32_t begin, std::uint32_t end, SortedKey* keys,
                                     std::uint32_t* counts) {
   const std::uint32_t count = end - begin;

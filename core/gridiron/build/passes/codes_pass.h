@@ -43,7 +43,7 @@ struct CodesStore {
 template <class Layout, class P>
 class RunCoder {
  public:
-  RunCoder(Transfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan, const TreeCurve& curve)
+  RunCoder(BuildTransfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan, const TreeCurve& curve)
       : transfers_(transfers), store_(store), plan_(plan), curve_(curve) {}
 
   /// Errors: kBadIndex.
@@ -258,7 +258,7 @@ class RunCoder {
     return transfers_.put(&part, plan_.run_parts.offset_by(run * sizeof(RunPart)), sizeof(RunPart), kPartTag);
   }
 
-  Transfers<P>& transfers_;
+  BuildTransfers<P>& transfers_;
   CodesStore<Layout>& store_;
   const BuildPlan& plan_;
   TreeCurve curve_;
@@ -269,7 +269,7 @@ class RunCoder {
 
 /// The lattice of all triangles' middles, from the bounds of vertices.
 template <class Layout, class P>
-[[nodiscard]] Status find_curve(Transfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan,
+[[nodiscard]] Status find_curve(BuildTransfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan,
                                 QuadBox& middles) {
   QuadBox vertices;
   GRIDIRON_TRY((for_each_window<CornerBox, CodesStore<Layout>::kPartWindow>(
@@ -287,7 +287,7 @@ template <class Layout, class P>
 
 /// Writes run_keys, samples, run_parts and raw_records. Items: runs. Errors: kBadIndex.
 template <class Layout, class P>
-[[nodiscard]] Status run_codes_pass(Transfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan) {
+[[nodiscard]] Status run_codes_pass(BuildTransfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan) {
   QuadBox middles;
   GRIDIRON_TRY(find_curve(transfers, store, plan, middles));
   RunCoder<Layout, P> coder(transfers, store, plan, TreeCurve(middles));

@@ -20,7 +20,7 @@ struct CutsStore {
 
 /// Writes cuts: of bucket and run, the number of the run's keys below the bucket. Items: groups of runs.
 template <class Layout, class P>
-[[nodiscard]] Status run_cuts_pass(Transfers<P>& transfers, CutsStore<Layout>& store, const BuildPlan& plan) {
+[[nodiscard]] Status run_cuts_pass(BuildTransfers<P>& transfers, CutsStore<Layout>& store, const BuildPlan& plan) {
   using Store = CutsStore<Layout>;
   const auto cut_group = [&](std::uint32_t group) -> Status {
     const std::uint32_t first_run = group * kRunGroup, rest = plan.run_count - first_run;

@@ -33,7 +33,7 @@ struct JoinStore {
 template <class P>
 class TreeJoiner {
  public:
-  TreeJoiner(Transfers<P>& transfers, JoinStore& store, const BuildPlan& plan)
+  TreeJoiner(BuildTransfers<P>& transfers, JoinStore& store, const BuildPlan& plan)
       : transfers_(transfers), store_(store), plan_(plan) {}
 
   /// Errors: kMemoryTooSmall.
@@ -190,14 +190,14 @@ class TreeJoiner {
     return transfers_.wait(kFirstOutputTag);
   }
 
-  Transfers<P>& transfers_;
+  BuildTransfers<P>& transfers_;
   JoinStore& store_;
   const BuildPlan& plan_;
 };
 
 /// Writes level_firsts, the nodes above the pieces and the result. Items: one. Errors: kMemoryTooSmall.
 template <class P>
-[[nodiscard]] Status run_join_pass(Transfers<P>& transfers, JoinStore& store, const BuildPlan& plan) {
+[[nodiscard]] Status run_join_pass(BuildTransfers<P>& transfers, JoinStore& store, const BuildPlan& plan) {
   return for_each_item(transfers, 1, [&](std::uint32_t) -> Status {
     GRIDIRON_TRY(fetch(transfers, store.state, plan.state));
     GRIDIRON_TRY(fetch(transfers, store.top_state, plan.top_state));
@@ -217,7 +217,7 @@ struct NumbersStore {
 
 /// Writes the nodes of buckets. Items: buckets of pieces.
 template <class P>
-[[nodiscard]] Status run_numbers_pass(Transfers<P>& transfers, NumbersStore& store, const BuildPlan& plan) {
+[[nodiscard]] Status run_numbers_pass(BuildTransfers<P>& transfers, NumbersStore& store, const BuildPlan& plan) {
   static constexpr std::uint32_t kNodes = NumbersStore::kNodes;
   GRIDIRON_TRY(fetch(transfers, store.top_state, plan.top_state));
   const auto number = [&](std::uint32_t bucket) -> Status {

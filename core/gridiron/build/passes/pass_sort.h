@@ -91,7 +91,7 @@ GRIDIRON_INLINE bool sort_by_exchanges(TreeKey* keys, std::uint32_t count, std::
 /// @returns whether the sorted keys are in `to`, else in `from`.
 template <std::uint32_t kDigitBits, std::uint32_t kStride, class P>
 bool sort_run(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t bits, std::uint32_t* counts,
-              Transfers<P>& transfers) {
+              BuildTransfers<P>& transfers) {
   constexpr std::uint32_t kValues = 1u << kDigitBits;
   const std::uint32_t digits = (bits + kDigitBits - 1) / kDigitBits, tried = digits < 2 ? digits : std::uint32_t{2};
   const std::uint32_t shift = bits > tried * kDigitBits ? bits - tried * kDigitBits : std::uint32_t{0};

@@ -35,7 +35,7 @@ class Window {
   }
   /// Starts to get so many elements, at least one, and what lies beside them in their granules.
   template <class P>
-  [[nodiscard]] Status get(Transfers<P>& transfers, std::uint32_t count, std::uint8_t tag) const {
+  [[nodiscard]] Status get(BuildTransfers<P>& transfers, std::uint32_t count, std::uint8_t tag) const {
     const std::uint64_t begin = address_ / kPortableGranuleBytes * kPortableGranuleBytes;
     const std::uint64_t end = (address_ + count * sizeof(Element) + kPortableGranuleBytes - 1) / kPortableGranuleBytes *
                               kPortableGranuleBytes;
@@ -44,7 +44,7 @@ class Window {
   }
   /// Starts to put so many elements, at least one. Precondition: they begin and end with a granule.
   template <class P>
-  [[nodiscard]] Status put(Transfers<P>& transfers, std::uint32_t count, std::uint8_t tag) const {
+  [[nodiscard]] Status put(BuildTransfers<P>& transfers, std::uint32_t count, std::uint8_t tag) const {
     return transfers.put(elements(), MainAddress{address_}, count * static_cast<std::uint32_t>(sizeof(Element)), tag);
   }
 
@@ -58,9 +58,9 @@ class Window {
 /// @param buffers  two, of window_bytes<Element>(kCount) each, aligned to kPortableCongruenceBytes.
 /// @param tag      and the next one are used. @param visit  -> Status.
 template <class Element, std::uint32_t kCount, class P, class Visit>
-[[nodiscard]] GRIDIRON_INLINE Status for_each_window(Transfers<P>& transfers, std::byte* buffers, MainAddress array,
-                                                     std::uint64_t first, std::uint64_t end, std::uint8_t tag,
-                                                     Visit&& visit) {
+[[nodiscard]] GRIDIRON_INLINE Status for_each_window(BuildTransfers<P>& transfers, std::byte* buffers,
+                                                     MainAddress array, std::uint64_t first, std::uint64_t end,
+                                                     std::uint8_t tag, Visit&& visit) {
   constexpr std::uint32_t kBytes = window_bytes<Element>(kCount);
   const auto count_at = [end](std::uint64_t at) {
     return end - at < kCount ? static_cast<std::uint32_t>(end - at) : kCount;
@@ -84,7 +84,7 @@ template <class Element, std::uint32_t kCount, class P, class Visit>
 
 /// Gets one element that lies in main memory and waits for it. @param local  congruent with it.
 template <class Element, class P>
-[[nodiscard]] Status fetch(Transfers<P>& transfers, Element& local, MainAddress address) {
+[[nodiscard]] Status fetch(BuildTransfers<P>& transfers, Element& local, MainAddress address) {
   static_assert(sizeof(Element) % kPortableGranuleBytes == 0);
   GRIDIRON_TRY(transfers.get(&local, address, sizeof(Element), kSetupTag));
   return transfers.wait(kSetupTag);
@@ -92,7 +92,7 @@ template <class Element, class P>
 
 /// Waits for tags [first, first + count).
 template <class P>
-[[nodiscard]] Status wait_for(Transfers<P>& transfers, std::uint8_t first, std::uint32_t count) {
+[[nodiscard]] Status wait_for(BuildTransfers<P>& transfers, std::uint8_t first, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) GRIDIRON_TRY(transfers.wait(static_cast<std::uint8_t>(first + i)));
   return Status::kOk;
 }
@@ -100,7 +100,7 @@ template <class P>
 /// Counts the work of splitting a range into parts: a search for each, over half of the keys each time; where not all
 /// parts are leaves at once, all that are there are weighed for each.
 template <class P>
-void count_split(Transfers<P>& transfers, std::uint32_t begin, std::uint32_t end, std::uint32_t parts,
+void count_split(BuildTransfers<P>& transfers, std::uint32_t begin, std::uint32_t end, std::uint32_t parts,
                  std::uint32_t leaf_triangles) {
   const std::uint32_t size = end - begin;
   const auto steps = static_cast<std::uint32_t>(width_of(size));
@@ -112,7 +112,7 @@ void count_split(Transfers<P>& transfers, std::uint32_t begin, std::uint32_t end
 
 /// Calls work(item) for each item that this core claims. @param item_count  of the pass.
 template <class P, class Work>
-[[nodiscard]] Status for_each_item(Transfers<P>& transfers, std::uint32_t item_count, Work&& work) {
+[[nodiscard]] Status for_each_item(BuildTransfers<P>& transfers, std::uint32_t item_count, Work&& work) {
   for (std::uint64_t claims = 0; claims <= item_count; ++claims) {
     const ItemClaim claim = transfers.claim_item();
     switch (claim.kind) {

@@ -22,7 +22,7 @@ struct RecordRing {
 template <class P>
 class RecordStream {
  public:
-  RecordStream(Transfers<P>& transfers, RecordRing& ring, MainAddress records)
+  RecordStream(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records)
       : transfers_(transfers), ring_(ring), records_(records) {}
 
   [[nodiscard]] GRIDIRON_INLINE bool is_empty() const { return popped_ == pushed_; }
@@ -61,7 +61,7 @@ class RecordStream {
     return static_cast<std::uint8_t>(kFirstTriangleTag + slot / RecordRing::kGroup);
   }
 
-  Transfers<P>& transfers_;
+  BuildTransfers<P>& transfers_;
   RecordRing& ring_;
   MainAddress records_;
   std::uint32_t pushed_ = 0, popped_ = 0, arrived_ = 0;  // counts
@@ -72,7 +72,7 @@ class RecordStream {
 template <class P, class Take>
 class RecordTaker {
  public:
-  RecordTaker(Transfers<P>& transfers, RecordRing& ring, MainAddress records, Take& take)
+  RecordTaker(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records, Take& take)
       : transfers_(transfers), ring_(ring), records_(records), take_(take) {}
 
   [[nodiscard]] GRIDIRON_INLINE Status push(std::uint32_t id) {
@@ -129,7 +129,7 @@ class RecordTaker {
     return Status::kOk;
   }
 
-  Transfers<P>& transfers_;
+  BuildTransfers<P>& transfers_;
   RecordRing& ring_;
   MainAddress records_;
   Take& take_;

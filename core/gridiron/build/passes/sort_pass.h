@@ -31,7 +31,7 @@ struct SortStore {
 template <class Layout, class P>
 class BucketSorter {
  public:
-  BucketSorter(Transfers<P>& transfers, SortStore<Layout>& store, const BuildPlan& plan)
+  BucketSorter(BuildTransfers<P>& transfers, SortStore<Layout>& store, const BuildPlan& plan)
       : transfers_(transfers), store_(store), plan_(plan) {}
 
   [[nodiscard]] Status sort(std::uint32_t bucket) {
@@ -205,7 +205,7 @@ class BucketSorter {
     return end_crowd();
   }
 
-  Transfers<P>& transfers_;
+  BuildTransfers<P>& transfers_;
   SortStore<Layout>& store_;
   const BuildPlan& plan_;
   std::uint32_t held_bucket_ = ~0u, held_run_ = 0;
@@ -213,7 +213,7 @@ class BucketSorter {
 
 /// Writes sorted. Items: buckets.
 template <class Layout, class P>
-[[nodiscard]] Status run_sort_pass(Transfers<P>& transfers, SortStore<Layout>& store, const BuildPlan& plan) {
+[[nodiscard]] Status run_sort_pass(BuildTransfers<P>& transfers, SortStore<Layout>& store, const BuildPlan& plan) {
   GRIDIRON_TRY(fetch(transfers, store.state, plan.state));
   BucketSorter<Layout, P> sorter(transfers, store, plan);
   return for_each_item(transfers, plan.bucket_room, [&](std::uint32_t bucket) {

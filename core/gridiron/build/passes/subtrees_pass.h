@@ -66,7 +66,7 @@ struct SubtreesStore {
 template <class Layout, class P>
 class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
  public:
-  SubtreeBuilder(Transfers<P>& transfers, SubtreesStore<Layout>& store, const BuildPlan& plan)
+  SubtreeBuilder(BuildTransfers<P>& transfers, SubtreesStore<Layout>& store, const BuildPlan& plan)
       : Splits(plan.input.leaf_triangles),
         transfers_(transfers),
         store_(store),
@@ -311,7 +311,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     return transfers_.wait(static_cast<std::uint8_t>(kRecordTag + record_side_));
   }
 
-  Transfers<P>& transfers_;
+  BuildTransfers<P>& transfers_;
   Store& store_;
   const BuildPlan& plan_;
   RecordStream<P> stream_;
@@ -329,7 +329,8 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
 
 /// Writes records, raw_nodes, piece_results and level_counts. Items: buckets of pieces.
 template <class Layout, class P>
-[[nodiscard]] Status run_subtrees_pass(Transfers<P>& transfers, SubtreesStore<Layout>& store, const BuildPlan& plan) {
+[[nodiscard]] Status run_subtrees_pass(BuildTransfers<P>& transfers, SubtreesStore<Layout>& store,
+                                       const BuildPlan& plan) {
   GRIDIRON_TRY(fetch(transfers, store.state, plan.state));
   GRIDIRON_TRY(fetch(transfers, store.top_state, plan.top_state));
   SubtreeBuilder<Layout, P> builder(transfers, store, plan);

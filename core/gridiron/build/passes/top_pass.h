@@ -40,7 +40,7 @@ struct TopStore {
 template <class Layout, class P>
 class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
  public:
-  TopSplitter(Transfers<P>& transfers, TopStore<Layout>& store, const BuildPlan& plan)
+  TopSplitter(BuildTransfers<P>& transfers, TopStore<Layout>& store, const BuildPlan& plan)
       : Splits(plan.input.leaf_triangles), transfers_(transfers), store_(store), plan_(plan) {
     for (std::uint32_t i = 0; i < TopStore<Layout>::kLines; ++i) store.line_held[i] = 0;
   }
@@ -277,7 +277,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     return wait_for(transfers_, kFirstTriangleTag, kShares);
   }
 
-  Transfers<P>& transfers_;
+  BuildTransfers<P>& transfers_;
   TopStore<Layout>& store_;
   const BuildPlan& plan_;
   SubtreeBucket bucket_{};
@@ -290,7 +290,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
 
 /// Writes top_state, tops, pieces and buckets. Items: one.
 template <class Layout, class P>
-[[nodiscard]] Status run_top_pass(Transfers<P>& transfers, TopStore<Layout>& store, const BuildPlan& plan) {
+[[nodiscard]] Status run_top_pass(BuildTransfers<P>& transfers, TopStore<Layout>& store, const BuildPlan& plan) {
   return for_each_item(transfers, 1, [&](std::uint32_t) -> Status {
     GRIDIRON_TRY(fetch(transfers, store.state, plan.state));
     return TopSplitter<Layout, P>(transfers, store, plan).run();
