@@ -305,6 +305,14 @@ TYPED_TEST(TreeBuild, HasTheSameTraceOnAnyNumberOfCores) {
   }
 }
 
+// So many runs that each has few samples.
+TEST(TreeBuildRuns, AreManyInASmallStore) {
+  const TestMesh mesh = make_height_field(260, 0.2f, 3);
+  ASSERT_GT(mesh.triangles.size(), 128u * BuildLayout64K::kRunTriangles);
+  expect_same(built_by_cores<BuildLayout64K>(mesh, 16, TreeOrder::kForAnyHit, {.cores = 2}),
+              built_by_one(mesh, 16, TreeOrder::kForAnyHit));
+}
+
 TEST(TreeBuildFiles, AreThoseOfOneCore) {
   for (const char* name : {"teapot.ply", "needles.ply"}) {
     const std::optional<TestMesh> mesh = load_ply(std::filesystem::path(GRIDIRON_SCENE_FILES) / name);

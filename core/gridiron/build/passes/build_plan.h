@@ -160,6 +160,8 @@ static_assert(sizeof(TopState) == 128);
 inline constexpr std::uint32_t kVertexItem = 2048;        ///< vertices that one item bounds
 inline constexpr std::uint32_t kVertexWindow = 256;       ///< of them at once
 inline constexpr std::uint32_t kMostVertices = 1u << 29;  ///< of a mesh
+inline constexpr std::uint32_t kLeastRunSamples = 8;      // both ends of their transfer are congruent
+static_assert(4 * kLeastRunSamples % kPortableCongruenceBytes == 0);
 inline constexpr std::uint32_t kMostRunSamples = 32;
 inline constexpr std::uint32_t kNoSample = ~0u;      ///< more than any code
 inline constexpr std::uint32_t kRunGroup = 8;        ///< runs whose cuts one item finds
@@ -219,8 +221,9 @@ template <class Layout>
   plan.run_count = shares(n, Layout::kRunTriangles);
   plan.run_stride = round_up(plan.run_count, kRunGroup);
   plan.sampled_runs = 1;
-  while (std::uint64_t{shares(plan.run_count, plan.sampled_runs)} * 4 > Layout::kSamples) ++plan.sampled_runs;
-  plan.run_samples = 4;
+  while (std::uint64_t{shares(plan.run_count, plan.sampled_runs)} * kLeastRunSamples > Layout::kSamples)
+    ++plan.sampled_runs;
+  plan.run_samples = kLeastRunSamples;
   while (plan.run_samples * 8 <= Layout::kRunTriangles && plan.run_samples < kMostRunSamples &&
          std::uint64_t{shares(plan.run_count, plan.sampled_runs)} * plan.run_samples * 2 <= Layout::kSamples) {
     plan.run_samples *= 2;
