@@ -115,6 +115,9 @@ TEST(CameraPath, ADirectionLooksAsFarAsOtherKeys) {
   const CameraPath alone = path_of(folder, "frame 0\neye 0 0 8\ndirection 0 0 -3\nframe 4\ndirection 0.1 0 0\n");
   EXPECT_EQ(alone.keys[0].at, Vec3(0, 0, 0));
   EXPECT_EQ(alone.keys[1].at, Vec3(8, 0, 8));
+  const CameraPath last =
+      path_of(folder, "frame 0\neye 0 0 8\nat 0 0 3\nframe 4\nat 0 0 6\nframe 8\ndirection 0.1 0 0\n");
+  EXPECT_EQ(last.keys[2].at, Vec3(2, 0, 8)) << "as far as the last one, not the first";
 }
 
 TEST(CameraPath, PartsOfTheCommandLineReplaceAllOfIts) {

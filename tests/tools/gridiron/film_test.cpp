@@ -89,9 +89,11 @@ TEST_F(Film, AnInterruptEndsFfmpegToo) {
   for (const int signal : {SIGINT, SIGKILL}) {
     RunningProgram program(folder_.folder(),
                            {"animate", "a.ply", "-o", "out", "--size", "24x16", "--film", "out/a.mp4"});
-    while (!fs::exists(folder_.path("process")) || read_file(folder_.path("process")).find('\n') == std::string::npos) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
+    const auto has_begun = [this] {
+      return fs::exists(folder_.path("process")) && read_file(folder_.path("process")).find('\n') != std::string::npos;
+    };
+    for (int i = 0; i < 30'000 && !has_begun(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    ASSERT_TRUE(has_begun());
     program.send(signal);
     const ProgramResult result = program.wait(std::chrono::seconds(30));
     if (signal == SIGINT) {

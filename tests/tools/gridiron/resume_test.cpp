@@ -172,7 +172,8 @@ TEST_F(Resume, GoesOnAfterSignals) {
       }
       return found;
     };
-    while (count() <= pictures) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    for (int i = 0; i < 60'000 && count() <= pictures; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ASSERT_GT(count(), pictures) << "it did not go on";
     program.send(signal);
     (void)program.wait(std::chrono::seconds(60));
     pictures = count();
