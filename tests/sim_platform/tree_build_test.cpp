@@ -88,8 +88,8 @@ Built built_by_cores(const TestMesh& mesh, std::uint32_t leaf_triangles, TreeOrd
   const auto vertices = place(12 * mesh.vertices.size() + 16), triangles = place(12 * count + 16);
   const auto records = place(sizeof(VertexTriangle) * count), nodes = place(sizeof(TreeNode) * input.node_room);
   const auto result = place(sizeof(BuildResult)), scratch = place(scratch_bytes);
-  std::memcpy(vertices.bytes.data(), mesh.vertices.data(), 12 * mesh.vertices.size());
-  std::memcpy(triangles.bytes.data(), mesh.triangles.data(), 12 * count);
+  std::ranges::copy(std::as_bytes(std::span(mesh.vertices)), vertices.bytes.begin());
+  std::ranges::copy(std::as_bytes(std::span(mesh.triangles)), triangles.bytes.begin());
   for (const auto& region : {records, nodes, result, scratch}) std::ranges::fill(region.bytes, std::byte{0xA5});
   input.vertices = vertices.address;
   input.triangles = triangles.address;
@@ -140,7 +140,7 @@ Built built_by_cores(const TestMesh& mesh, std::uint32_t leaf_triangles, TreeOrd
   std::memcpy(&tree.size, result.bytes.data(), sizeof tree.size);
   const auto taken = [](const auto& region, auto& elements, std::uint32_t n) {
     elements.resize(n);
-    std::memcpy(static_cast<void*>(elements.data()), region.bytes.data(), n * sizeof elements[0]);
+    std::ranges::copy(region.bytes.first(n * sizeof elements[0]), std::as_writable_bytes(std::span(elements)).begin());
     const auto rest = region.bytes.subspan(n * sizeof elements[0]);
     return std::ranges::all_of(rest, [](std::byte byte) { return byte == std::byte{0xA5}; });
   };
