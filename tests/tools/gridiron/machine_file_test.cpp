@@ -123,8 +123,8 @@ TEST(MachineFile, WithoutABaseEveryKeyIsAsked) {
     EXPECT_EQ(complaint_of(path), path.string() + ":" + lines + ": the file ends without '" + key +
                                       "', and has no 'based_on' to take it from");
   }
-  // 14 numbers and the master's clock; three kinds of work are charged as events and have no key.
-  EXPECT_EQ(keys, static_cast<int>(15 + sim::kGridEngine.kind_count() - 3 + kTileWorkCount + sim::kBuildStepCount));
+  // 16 numbers and the master's clock; three kinds of work are charged as events and have no key.
+  EXPECT_EQ(keys, static_cast<int>(17 + sim::kGridEngine.kind_count() - 3 + kTileWorkCount + sim::kBuildStepCount));
   EXPECT_NE(read_text(without_line(text, "description"), "b.machine")->description, "");
 }
 
