@@ -59,7 +59,7 @@ TEST(CameraPath, ErrorsNameTheLine) {
   };
   for (const auto& [text, words] : cases) {
     SCOPED_TRACE(text);
-    const std::string message = failure_of([&] { return path_of(folder, text); }, tool::ExitCode::kBadInput);
+    const std::string message = failure_of([&, &text = text] { return path_of(folder, text); }, tool::ExitCode::kBadInput);
     EXPECT_NE(message.find(std::string("a.path") + words), std::string::npos) << message << "\nlacks: " << words;
   }
 }
