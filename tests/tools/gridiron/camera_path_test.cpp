@@ -57,9 +57,10 @@ TEST(CameraPath, ErrorsNameTheLine) {
       {"frame 0\nzoom 2\n", ":2: unknown word 'zoom'; expected frame, eye, at, direction, up or fov"},
       {"frame 0\neye 0 0 1\nat 0 0 0\nframe 9\nat 0 0 1\n", ":4: eye and at are the same point"},
   };
-  for (const auto& [text, words] : cases) {
+  for (const auto& [bad, words] : cases) {
+    const std::string text = bad;
     SCOPED_TRACE(text);
-    const std::string message = failure_of([&, &text = text] { return path_of(folder, text); }, tool::ExitCode::kBadInput);
+    const std::string message = failure_of([&] { return path_of(folder, text); }, tool::ExitCode::kBadInput);
     EXPECT_NE(message.find(std::string("a.path") + words), std::string::npos) << message << "\nlacks: " << words;
   }
 }
