@@ -160,7 +160,7 @@ class RunCoder {
     std::byte* const buffer = store_.lone[chunk % 2] + corner * CodesStore<Layout>::kLoneBytes;
     const Window<Vec3> window(buffer, plan_.input.vertices, index);
     store_.corners[chunk % 2][corner] =
-        static_cast<std::uint32_t>(reinterpret_cast<const std::byte*>(window.elements()) - store_.lines);
+        static_cast<std::uint32_t>(reinterpret_cast<const std::byte*>(window.elements()) - store_bytes());
     return window.get(transfers_, 1, corner_tag(chunk));
   }
 
@@ -194,7 +194,12 @@ class RunCoder {
   }
   [[nodiscard]] GRIDIRON_INLINE CornerQuad corner_at(std::uint32_t place) const {
     // Not the word behind it, which may be under way.
-    return quad_of(*reinterpret_cast<const Vec3*>(store_.lines + place));
+    return quad_of(*reinterpret_cast<const Vec3*>(store_bytes() + place));
+  }
+  // Places of corners count from here: from the first line.
+  [[nodiscard]] GRIDIRON_INLINE const std::byte* store_bytes() const {
+    static_assert(offsetof(CodesStore<Layout>, lines) == 0);
+    return reinterpret_cast<const std::byte*>(&store_);
   }
   // Until its leaf is made, a record has the triangle's area in the place of its first reserved word.
   static GRIDIRON_INLINE void write_record(const CornerQuads& corners, std::uint32_t id, float area,
