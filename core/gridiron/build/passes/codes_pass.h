@@ -11,6 +11,7 @@
 #include <gridiron/build/tree/tree_order.h>
 
 #include <bit>
+#include <cstddef>
 
 namespace gridiron {
 
