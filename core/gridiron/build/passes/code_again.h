@@ -11,6 +11,15 @@
 
 namespace gridiron {
 
+// Crowds are few: one copy of each of these, as every four inlined are kilobytes on a core without vectors.
+[[nodiscard]] inline GRIDIRON_OUTLINE FourBoxes boxes_of_four(const CornerQuads* corners) {
+  return FourTriangles::of(corners).boxes();
+}
+inline GRIDIRON_OUTLINE void codes_of_four(const TreeCurve& curve, const FourBoxes& boxes, std::uint32_t* codes) {
+  const Lanes<4>::Int found = curve.codes_of(boxes);
+  for (int k = 0; k < 4; ++k) codes[k] = static_cast<std::uint32_t>(found[k]);
+}
+
 /// Collects records in fours and passes their boxes on.
 template <class Use>
 class BoxQuads {
@@ -31,7 +40,7 @@ class BoxQuads {
 
  private:
   GRIDIRON_INLINE void flush() {
-    use_(FourTriangles::of(corners_).boxes(), ids_, count_);
+    use_(boxes_of_four(corners_), ids_, count_);
     count_ = 0;
   }
   Use& use_;
@@ -75,10 +84,11 @@ template <class P, class EachId, class Use>
                                    const TreeCurve& curve, EachId&& each_id, Use&& use) {
   Status status = Status::kOk;
   const auto code = [&](const FourBoxes& boxes, const std::uint32_t* ids, std::uint32_t count) GRIDIRON_INLINE_LAMBDA {
-    const Lanes<4>::Int codes = curve.codes_of(boxes);
+    std::uint32_t codes[4];
+    codes_of_four(curve, boxes, codes);
     transfers.add_work(BuildWork::kAgainGroup);
     for (std::uint32_t k = 0; k < count && status == Status::kOk; ++k) {
-      status = use(static_cast<std::uint32_t>(codes[static_cast<int>(k)]), ids[k]);
+      status = use(codes[k], ids[k]);
     }
   };
   GRIDIRON_TRY(for_each_boxes(transfers, ring, records, each_id, code));
