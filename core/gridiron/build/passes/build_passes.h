@@ -45,9 +45,11 @@ static_assert(sizeof(BuildStore<BuildLayout64K>) <= kBuildRoomBytes<BuildLayout6
 /// all cores; it has plan.item_counts[pass] items.
 ///
 /// Errors: kBadVertex, kBadIndex, kNoTriangles, kMemoryTooSmall of build_tree(), each in one of the passes; kAborted,
-/// kDeadline; the platform's. After an error no further pass may run.
+/// kDeadline; the platform's. After an error no further pass may run. Inlined: where `pass` is a constant, the program
+/// has the code of that pass alone.
 template <class P, class Layout>
-[[nodiscard]] Status run_build_pass(P& platform, BuildStore<Layout>& store, const BuildPlan& plan, BuildPass pass) {
+[[nodiscard]] GRIDIRON_INLINE Status run_build_pass(P& platform, BuildStore<Layout>& store, const BuildPlan& plan,
+                                                    BuildPass pass) {
   store.work = {};
   BuildTransfers<P> transfers(platform, store.work);
   switch (pass) {

@@ -39,7 +39,7 @@ struct BuildLayout64K {
   /// @cond
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
   static constexpr std::uint32_t kCodeBudgetBytes = 24 * 1024;
-  static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024 + 256;
   static constexpr std::uint32_t kRunTriangles = 1024;
   static constexpr std::uint32_t kCacheLines = 32;
   static constexpr std::uint32_t kChunkTriangles = 16;
