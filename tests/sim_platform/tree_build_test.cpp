@@ -2,10 +2,13 @@
 // of cores, the order of items and the time that transfers take.
 // Memory: std::vector and the simulated main memory. Threads: starts some. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/build/passes/build_passes.h>
+#include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/image/scene_image.h>
 #include <gridiron/sim/build_pass_work.h>
 #include <gridiron/sim/passes.h>
 
+#include "core/build/grid/line_buffer.h"
 #include "support/ply_load.h"
 #include "support/test_mesh.h"
 
@@ -70,6 +73,45 @@ struct Way {
   std::optional<std::uint32_t> record_room{}, node_room{};
 };
 
+// Runs the passes of a plan.
+template <class Layout>
+sim::PassesResult run_plan(sim::SimMemory& memory, const BuildPlan& plan, const Way& way,
+                           const std::vector<sim::MainRange>& writable) {
+  std::vector<sim::Pass> passes;
+  for (std::uint32_t i = 0; i < kBuildPassCount; ++i) {
+    const auto kernel = [&plan, &way, i](auto& core, std::span<std::byte> data) {
+      // Whatever ran before has left something there.
+      std::ranges::fill(data, std::byte{0x5A});
+      auto& store = *reinterpret_cast<BuildStore<Layout>*>(data.data());
+      if (!way.backwards) return run_build_pass(core, store, plan, static_cast<BuildPass>(i));
+      Backwards reversed(core, plan.item_counts[i]);
+      return run_build_pass(reversed, store, plan, static_cast<BuildPass>(i));
+    };
+    passes.push_back({.name = "pass",
+                      .items = {.most = plan.item_counts[i]},
+                      .data_bytes = sizeof(BuildStore<Layout>),
+                      .writable = writable,
+                      .kernel = sim::PassKernel(kernel),
+                      .engine = &sim::work_of(static_cast<BuildPass>(i))});
+  }
+  sim::ChipOptions options;
+  options.mode = way.mode;
+  options.threads = way.cores;
+  options.completion = way.completion;
+  options.seed = way.seed;
+  options.limits.queue_depth = way.queue_depth;
+  options.store = Layout::kArenaBytes > 65536 ? sim::StoreSize::k256KB : sim::StoreSize::k64KB;
+  return sim::run_passes(memory, passes, options);
+}
+
+std::string words_of_violations(const sim::PassesResult& run) {
+  std::string words;
+  for (const sim::PassRun& pass : run.passes) {
+    for (const sim::Violation& violation : pass.result.violations) words += violation.detail + "\n";
+  }
+  return words;
+}
+
 template <class Layout>
 Built built_by_cores(const TestMesh& mesh, std::uint32_t leaf_triangles, TreeOrder order, const Way& way) {
   const std::uint64_t count = mesh.triangles.size();
@@ -102,40 +144,14 @@ Built built_by_cores(const TestMesh& mesh, std::uint32_t leaf_triangles, TreeOrd
   BuildPlan plan{};
   tree.status = plan_build<Layout>(input, plan);
   if (tree.status != Status::kOk) return tree;
-  std::vector<sim::Pass> passes;
   std::vector<sim::MainRange> writable;
   for (const auto& region : {records, nodes, result, scratch}) {
     writable.push_back({region.address.value, region.address.value + region.bytes.size()});
   }
-  for (std::uint32_t i = 0; i < kBuildPassCount; ++i) {
-    const auto kernel = [&plan, &way, i](auto& core, std::span<std::byte> data) {
-      // Whatever ran before has left something there.
-      std::ranges::fill(data, std::byte{0x5A});
-      auto& store = *reinterpret_cast<BuildStore<Layout>*>(data.data());
-      if (!way.backwards) return run_build_pass(core, store, plan, static_cast<BuildPass>(i));
-      Backwards reversed(core, plan.item_counts[i]);
-      return run_build_pass(reversed, store, plan, static_cast<BuildPass>(i));
-    };
-    passes.push_back({.name = "pass",
-                      .items = {.most = plan.item_counts[i]},
-                      .data_bytes = sizeof(BuildStore<Layout>),
-                      .writable = writable,
-                      .kernel = sim::PassKernel(kernel),
-                      .engine = &sim::kBuildPassesWork});
-  }
-  sim::ChipOptions options;
-  options.mode = way.mode;
-  options.threads = way.cores;
-  options.completion = way.completion;
-  options.seed = way.seed;
-  options.limits.queue_depth = way.queue_depth;
-  options.store = Layout::kArenaBytes > 65536 ? sim::StoreSize::k256KB : sim::StoreSize::k64KB;
-  sim::PassesResult run = sim::run_passes(memory, passes, options);
+  sim::PassesResult run = run_plan<Layout>(memory, plan, way, writable);
   tree.status = run.status;
-  for (sim::PassRun& pass : run.passes) {
-    for (const sim::Violation& violation : pass.result.violations) tree.words += violation.detail + "\n";
-    tree.traces.push_back(std::move(pass.result.trace));
-  }
+  tree.words = words_of_violations(run);
+  for (sim::PassRun& pass : run.passes) tree.traces.push_back(std::move(pass.result.trace));
   if (tree.status != Status::kOk) return tree;
   std::memcpy(&tree.size, result.bytes.data(), sizeof tree.size);
   const auto taken = [](const auto& region, auto& elements, std::uint32_t n) {
@@ -301,6 +317,92 @@ TYPED_TEST(TreeBuild, HasTheSameTraceOnAnyNumberOfCores) {
     ASSERT_EQ(tiles.size(), second.traces[pass].tiles.size());
     for (std::size_t i = 0; i < tiles.size(); ++i) {
       EXPECT_EQ(tiles[i].packed, second.traces[pass].tiles[i].packed) << "pass " << pass << " item " << i;
+    }
+  }
+}
+
+// --- The image around the tree --------------------------------------------------------------------------------------
+
+std::vector<std::byte> image_by_one(const TestMesh& mesh, std::uint32_t leaf_triangles) {
+  const GridParameters parameters{.leaf_triangles = leaf_triangles, .has_tree = true, .has_grid = false};
+  GridNeed need{};
+  EXPECT_EQ(count_scene_image(mesh.view(), parameters, need), Status::kOk);
+  LineBuffer image(need.image_bytes);
+  std::vector<std::uint64_t> scratch(need.scratch_bytes / 8 + 1);
+  EXPECT_EQ(build_scene_image(mesh.view(), parameters, need, image.bytes(), std::as_writable_bytes(std::span(scratch))),
+            Status::kOk);
+  SceneImageView view{};
+  SceneImageError error;
+  EXPECT_EQ(open_scene_image(image.bytes(), view, error), Status::kOk);
+  const auto bytes = image.bytes().first(view.header.image_bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+template <class Layout>
+std::vector<std::byte> image_by_cores(const TestMesh& mesh, std::uint32_t leaf_triangles, const Way& way) {
+  const std::uint64_t count = mesh.triangles.size(), node_room = most_tree_nodes(count, leaf_triangles);
+  BuildInput input;
+  input.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
+  input.triangle_count = input.record_room = static_cast<std::uint32_t>(count);
+  input.leaf_triangles = leaf_triangles;
+  input.order = TreeOrder::kByNumber;
+  input.node_room = static_cast<std::uint32_t>(node_room);
+  input.image_room = kTreeImageHeadBytes + round_up<std::uint64_t>(48 * count, 128) + sizeof(TreeNode) * node_room;
+  input.is_tree_image = true;
+  input.image = MainAddress{128};
+  const std::uint64_t scratch_bytes = build_scratch_bytes<Layout>(input);
+  sim::SimMemory memory(scratch_bytes + 12 * mesh.vertices.size() + 12 * count + input.image_room + (1u << 20));
+  const auto vertices = memory.allocate(12 * mesh.vertices.size() + 16).value();
+  const auto triangles = memory.allocate(12 * count + 16).value();
+  const auto image = memory.allocate(input.image_room).value(), result = memory.allocate(sizeof(BuildResult)).value();
+  const auto scratch = memory.allocate(scratch_bytes).value();
+  std::ranges::copy(std::as_bytes(std::span(mesh.vertices)), vertices.bytes.begin());
+  std::ranges::copy(std::as_bytes(std::span(mesh.triangles)), triangles.bytes.begin());
+  for (const auto& region : {image, result, scratch}) std::ranges::fill(region.bytes, std::byte{0xA5});
+  input.vertices = vertices.address;
+  input.triangles = triangles.address;
+  input.image = image.address;
+  input.result = result.address;
+  input.scratch = scratch.address;
+  BuildPlan plan{};
+  EXPECT_EQ(plan_build<Layout>(input, plan), Status::kOk);
+  std::vector<sim::MainRange> writable;
+  for (const auto& region : {image, result, scratch}) {
+    writable.push_back({region.address.value, region.address.value + region.bytes.size()});
+  }
+  const sim::PassesResult run = run_plan<Layout>(memory, plan, way, writable);
+  EXPECT_EQ(run.status, Status::kOk) << words_of_violations(run);
+  if (run.status != Status::kOk) return {};
+  auto& header = *reinterpret_cast<ImageHeader*>(image.bytes.data());
+  const auto checks =
+      memory.bytes_at(plan.piece_checks, sizeof(PieceCheck) * std::uint64_t{plan.item_counts[kBuildPassCount - 1]});
+  EXPECT_EQ(finish_built_image({reinterpret_cast<const PieceCheck*>(checks.data()), checks.size() / sizeof(PieceCheck)},
+                               header),
+            Status::kOk);
+  SceneImageView view{};
+  SceneImageError error;
+  EXPECT_EQ(open_scene_image(image.bytes, view, error), Status::kOk) << error.field;
+  const auto rest = image.bytes.subspan(header.image_bytes);
+  EXPECT_TRUE(std::ranges::all_of(rest, [](std::byte byte) { return byte == std::byte{0xA5}; })) << "behind its end";
+  return {image.bytes.begin(), image.bytes.begin() + static_cast<std::ptrdiff_t>(header.image_bytes)};
+}
+
+// Header, section table, record of the tree, triangles, padding, nodes and check value.
+TYPED_TEST(TreeBuild, WholeImageIsThatOfPrepare) {
+  TestMesh some_flat = make_torus(50, 60, 3, 1);
+  some_flat.append(flat(7));
+  for (const TestMesh& mesh : {make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), some_flat, make_random_soup(5003, 1, 4),
+                               moved(make_height_field(40, 0.2f, 3), 1, Vec3(-7, 0, 0))}) {
+    for (const std::uint32_t leaf : {3u, 16u}) {
+      const std::vector<std::byte> one = image_by_one(mesh, leaf);
+      for (std::uint32_t cores = 1; cores <= 16; cores += cores < 3 ? 1 : 13) {
+        SCOPED_TRACE(testing::Message() << mesh.triangles.size() << " leaf " << leaf << " cores " << cores);
+        const Way way = {.cores = cores, .completion = Completion::kRandom, .seed = cores, .backwards = cores == 2};
+        const std::vector<std::byte> many = image_by_cores<TypeParam>(mesh, leaf, way);
+        ASSERT_EQ(many.size(), one.size());
+        const auto [first, second] = std::ranges::mismatch(many, one);
+        EXPECT_EQ(first - many.begin(), std::ptrdiff_t(one.size())) << "the first byte that differs";
+      }
     }
   }
 }

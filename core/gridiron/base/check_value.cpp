@@ -4,14 +4,8 @@
 #include <bit>
 
 namespace gridiron {
-namespace {
 
 static_assert(std::endian::native == std::endian::little, "scene images are little-endian, and so are their makers");
-
-constexpr std::uint64_t kOffsetBasis = 0xcbf29ce484222325u;
-constexpr std::uint64_t kPrime = 0x100000001b3u;
-
-}  // namespace
 
 CheckValue::CheckValue() {
   for (std::uint64_t& stream : streams_) stream = kOffsetBasis;
@@ -47,6 +41,25 @@ std::uint64_t CheckValue::value() const {
   std::uint64_t hash = kOffsetBasis;
   for (const std::uint64_t stream : streams_) hash = (hash ^ stream) * kPrime;
   return hash;
+}
+
+void ImageCheckValue::add(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const std::size_t room = kPieceBytes - piece_bytes_, count = bytes.size() < room ? bytes.size() : room;
+    piece_.add(bytes.first(count));
+    bytes = bytes.subspan(count);
+    piece_bytes_ += count;
+    if (piece_bytes_ < kPieceBytes) continue;
+    add_piece(piece_.value());
+    piece_ = CheckValue();
+    piece_bytes_ = 0;
+  }
+}
+
+std::uint64_t ImageCheckValue::value() const {
+  ImageCheckValue all = *this;
+  if (piece_bytes_ > 0) all.add_piece(piece_.value());
+  return all.value_;
 }
 
 }  // namespace gridiron

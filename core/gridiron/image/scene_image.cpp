@@ -249,7 +249,7 @@ std::uint64_t scene_image_check_value(std::span<const std::byte> image) {
   std::byte header[kGroup];
   __builtin_memcpy(header, image.data(), kGroup);
   __builtin_memset(header + offsetof(ImageHeader, check_value), 0, sizeof(ImageHeader::check_value));
-  CheckValue check;
+  ImageCheckValue check;
   check.add(header);
   check.add(image.subspan(kGroup));
   return check.value();

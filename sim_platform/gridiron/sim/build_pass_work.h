@@ -4,6 +4,7 @@
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/build/passes/build_plan.h>
 #include <gridiron/build/passes/build_work.h>
 #include <gridiron/sim/engine_work.h>
 
@@ -45,6 +46,12 @@ inline constexpr WorkPrice kBuildPassPrices[] = {
     {BuildWork::kSearchStep, 24},    // one chain: load, compare, select
     {BuildWork::kNode, 1300},        // 16 densities, 60 exchanges of their order
     {BuildWork::kNumberedNode, 190}};
+
+inline constexpr WorkKind kCheckPassKinds[] = {{CheckWork::kCheckedLine, "checked_line"}};
+
+// Eight times two words of 64 bits in lanes: exclusive or, and a product by 2^40 + 435 of two products of 16 bits, shifts,
+// a carry and sums: 11 even.
+inline constexpr WorkPrice kCheckPassPrices[] = {{CheckWork::kCheckedLine, 92}};
 // clang-format on
 
 /// The passes that build the tree.
@@ -54,5 +61,18 @@ inline constexpr EngineWork kBuildPassesWork =
                                        .kinds = kBuildPassKinds,
                                        .prices = kBuildPassPrices,
                                        .wait_levels = {"output", "window", "record", "setup"}});
+
+/// The pass that checks an image.
+inline constexpr EngineWork kCheckPassWork =
+    EngineWork::make(CheckWork::kEnd, {.id = kBuildPassesId + 1,
+                                       .name = "check",
+                                       .kinds = kCheckPassKinds,
+                                       .prices = kCheckPassPrices,
+                                       .wait_levels = {"output", "window", "record", "setup"}});
+
+/// @returns the kinds of work of a pass.
+[[nodiscard]] constexpr const EngineWork& work_of(BuildPass pass) {
+  return pass == BuildPass::kCheck ? kCheckPassWork : kBuildPassesWork;
+}
 
 }  // namespace gridiron::sim

@@ -1,4 +1,6 @@
 // Scene image: every hostile byte is refused or harmless. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/base/check_value.h>
+
 #include "core/image/image_damage.h"
 #include "support/test_mesh.h"
 
@@ -326,15 +328,19 @@ TEST(Layout, FieldsStandWhereTheSpecificationSays) {
 
 // The definition of SPEC.md, word by word.
 std::uint64_t check_value_by_the_book(std::span<const std::byte> bytes) {
-  std::vector<std::uint64_t> streams(8, 0xcbf29ce484222325u);
-  for (std::size_t i = 0; i < bytes.size() / 8; ++i) {
-    std::uint64_t word = 0;
-    for (std::size_t k = 0; k < 8; ++k) word |= std::to_integer<std::uint64_t>(bytes[8 * i + k]) << (8 * k);
-    if (i == 2) word = 0;  // the field itself
-    streams[i % 8] = (streams[i % 8] ^ word) * 0x100000001b3u;
-  }
   std::uint64_t value = 0xcbf29ce484222325u;
-  for (const std::uint64_t stream : streams) value = (value ^ stream) * 0x100000001b3u;
+  for (std::size_t begin = 0; begin < bytes.size(); begin += 16384) {
+    std::vector<std::uint64_t> streams(8, 0xcbf29ce484222325u);
+    for (std::size_t i = begin / 8; i < std::min(bytes.size(), begin + 16384) / 8; ++i) {
+      std::uint64_t word = 0;
+      for (std::size_t k = 0; k < 8; ++k) word |= std::to_integer<std::uint64_t>(bytes[8 * i + k]) << (8 * k);
+      if (i == 2) word = 0;  // the field itself
+      streams[i % 8] = (streams[i % 8] ^ word) * 0x100000001b3u;
+    }
+    std::uint64_t piece = 0xcbf29ce484222325u;
+    for (const std::uint64_t stream : streams) piece = (piece ^ stream) * 0x100000001b3u;
+    value = (value ^ piece) * 0x100000001b3u;
+  }
   return value;
 }
 
@@ -342,6 +348,28 @@ TEST(CheckValue, IsWhatTheSpecificationSays) {
   const BuiltImage built = small_image(TriangleFormat::kVertices);
   EXPECT_EQ(built.view.header.check_value, check_value_by_the_book(built.image.bytes()));
   EXPECT_EQ(scene_image_check_value(built.image.bytes()), built.view.header.check_value);
+}
+
+// Wherever the bytes are cut before they are added.
+TEST(CheckValue, OfAnImageDoesNotDependOnItsParts) {
+  LineBuffer image(5 * 16384 + 128);
+  for (std::size_t i = 0; i < image.bytes().size(); ++i) image.bytes()[i] = static_cast<std::byte>(i * i / 7);
+  for (const std::size_t end : {std::size_t{64}, std::size_t{16384}, std::size_t{16448}, image.bytes().size()}) {
+    const auto bytes = image.bytes().first(end);
+    ImageCheckValue once, parts, pieces;
+    once.add(bytes);
+    for (std::size_t at = 0, step = 64; at < end; at += step, step = (step * 5 + 64) % 40960 + 64) {
+      step = std::min(step, end - at);
+      parts.add(bytes.subspan(at, step));
+    }
+    for (std::size_t at = 0; at < end; at += ImageCheckValue::kPieceBytes) {
+      CheckValue piece;
+      piece.add(bytes.subspan(at, std::min<std::size_t>(end - at, ImageCheckValue::kPieceBytes)));
+      pieces.add_piece(piece.value());
+    }
+    EXPECT_EQ(parts.value(), once.value()) << end;
+    EXPECT_EQ(pieces.value(), once.value()) << end;
+  }
 }
 
 }  // namespace

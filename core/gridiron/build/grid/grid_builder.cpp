@@ -230,7 +230,7 @@ LatticeTriangle lattice_triangle(const Lattice& lattice, const Vec3& a, const Ve
 // Writes the triangle records front to back and adds them to the check value while they are in the cache.
 template <class Mesh>
 void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32_t* ids_by_cell, std::byte* triangles,
-                     CheckValue& check) {
+                     ImageCheckValue& check) {
   constexpr std::uint64_t kPieceRecords = 256;  // a multiple of kGroupBytes in bytes
   static_assert(kPieceRecords * sizeof(LatticeTriangle) % CheckValue::kGroupBytes == 0);
   const bool projection = grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection);
@@ -273,7 +273,7 @@ void write_triangles(const Mesh& mesh, const GridRecord& grid, const std::uint32
 // Errors: kBadParameter if the mesh is not the one that was counted.
 template <class Mesh>
 Status write_grid(const Mesh& mesh, const GridRecord& grid, const ImageLayout& layout, std::byte* bytes,
-                  CheckValue& check) {
+                  ImageCheckValue& check) {
   std::byte* const triangles = bytes + layout.triangles_offset;
   enter_step<GridStep::kClearedLine>();
   clear(bytes, layout.cell_blocks_offset, layout.triangles_offset);
@@ -309,7 +309,7 @@ bool are_bounds_of(const GridRecord& grid, const TreeRecord& tree) {
 // Errors: kBadParameter if the mesh is not the one that was counted.
 template <class Mesh>
 Status write_image(const Mesh& mesh, const GridNeed& need, bool has_grid, std::span<std::byte> scratch,
-                   ImageLayout& layout, std::byte* bytes, CheckValue& check) {
+                   ImageLayout& layout, std::byte* bytes, ImageCheckValue& check) {
   // The directory says how many nodes the tree has, so the tree comes first.
   if (layout.tree.section_count != 0) {
     GRIDIRON_TRY(write_tree_sections(mesh, scratch, layout.tree, bytes));
@@ -357,7 +357,7 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
   if (!need_ok || reinterpret_cast<std::uintptr_t>(image.data()) % kLineBytes != 0) return Status::kBadParameter;
   if (image.size() < need.image_bytes || scratch.size() < need.scratch_bytes) return Status::kMemoryTooSmall;
 
-  CheckValue check;
+  ImageCheckValue check;
   if (parameters.format != TriangleFormat::kLattice) {
     GRIDIRON_TRY(write_image(mesh, need, parameters.has_grid, scratch, layout, image.data(), check));
   } else {

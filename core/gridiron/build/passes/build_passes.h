@@ -9,6 +9,7 @@
 #include <gridiron/build/passes/build_plan.h>
 #include <gridiron/build/passes/codes_pass.h>
 #include <gridiron/build/passes/cuts_pass.h>
+#include <gridiron/build/passes/image_pass.h>
 #include <gridiron/build/passes/join_pass.h>
 #include <gridiron/build/passes/sort_pass.h>
 #include <gridiron/build/passes/subtrees_pass.h>
@@ -31,6 +32,7 @@ struct alignas(128) BuildStore {
     SubtreesStore<Layout> subtrees;
     JoinStore join;
     NumbersStore numbers;
+    CheckStore check;
   };
 };
 
@@ -71,6 +73,8 @@ template <class P, class Layout>
       return run_join_pass(transfers, store.join, plan);
     case BuildPass::kNumbers:
       return run_numbers_pass(transfers, store.numbers, plan);
+    case BuildPass::kCheck:
+      return run_check_pass(transfers, store.check, plan);
     case BuildPass::kCount:
       break;
   }

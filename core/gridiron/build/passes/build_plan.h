@@ -3,6 +3,7 @@
 // Source: own. Memory: caller's. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/check_value.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
 #include <gridiron/base/tree_records.h>
@@ -66,11 +67,16 @@ struct BuildInput {
   MainAddress nodes;    ///< TreeNode[node_room]
   std::uint32_t record_room = 0;
   std::uint32_t node_room = 0;
-  MainAddress result;   ///< BuildResult
-  MainAddress scratch;  ///< build_scratch_bytes()
+  MainAddress result;            ///< BuildResult
+  MainAddress scratch;           ///< build_scratch_bytes()
+  MainAddress image;             ///< scene image whose pieces the last pass checks; 0: none
+  std::uint64_t image_room = 0;  ///< of that image, bytes
+  /// The image holds nothing but this tree. Then the cores write all of it but its check value: its head, the records
+  /// behind it (`records` is not used), padding, and the nodes behind that (`nodes` is not used).
+  bool is_tree_image = false;
 };
 
-/// What the last pass writes.
+/// What the join pass writes.
 struct alignas(32) BuildResult {
   TreeSize size;
   std::uint32_t reserved[6];
@@ -151,9 +157,18 @@ static_assert(sizeof(TopNode) == 128);
 /// What splitting the large ranges has made.
 struct alignas(32) TopState {
   std::uint32_t top_count, piece_count, bucket_count;
-  std::uint32_t reserved[29];
+  std::uint32_t triangle_count;  ///< kept
+  std::uint32_t reserved[28];
 };
 static_assert(sizeof(TopState) == 128);
+
+/// The check value of a piece of the image.
+struct alignas(16) PieceCheck {
+  std::uint64_t value, reserved;
+};
+static_assert(sizeof(PieceCheck) == 16);
+
+inline constexpr std::uint32_t kTreeImageHeadBytes = 384;  ///< of an image that holds a tree alone, before its records
 
 // --- Plan ---------------------------------------------------------------------------------------------------------
 
@@ -180,6 +195,7 @@ enum class BuildPass : std::uint8_t {
   kSubtrees,
   kJoin,
   kNumbers,
+  kCheck,
   kCount
 };
 inline constexpr std::uint32_t kBuildPassCount = static_cast<std::uint32_t>(BuildPass::kCount);
@@ -196,7 +212,7 @@ struct BuildPlan {
   std::uint32_t subtree_room;                         ///< buckets of pieces, at most
   std::uint32_t item_counts[kBuildPassCount];
   MainAddress vertex_parts, run_keys, samples, run_parts, state, splitters, cuts, sorted, raw_records, top_state, tops,
-      top_results, pieces, piece_results, buckets, level_counts, level_firsts, raw_nodes;
+      top_results, pieces, piece_results, buckets, level_counts, level_firsts, raw_nodes, piece_checks;
   std::uint64_t end;  ///< of scratch memory
 };
 
@@ -204,6 +220,13 @@ struct BuildPlan {
 [[nodiscard]] constexpr std::uint64_t raw_node_place(std::uint64_t triangles, std::uint32_t leaf_triangles) {
   // See most_tree_nodes(); without its constant, as a piece has more triangles than a leaf.
   return leaf_triangles < 15 ? triangles * 16 / (15 * (leaf_triangles + 1)) : triangles / 15;
+}
+
+/// @returns where the nodes lie. @param kept  triangles that have an area: those of a tree's image lie behind them.
+[[nodiscard]] constexpr MainAddress nodes_of(const BuildPlan& plan, std::uint32_t kept) {
+  if (!plan.input.is_tree_image) return plan.input.nodes;
+  return plan.input.records.offset_by(
+      round_up<std::uint64_t>(std::uint64_t{kept} * sizeof(VertexTriangle), kLineBytes));
 }
 
 /// Errors: kBadParameter, kTooManyTriangles: as of build_tree().
@@ -217,6 +240,7 @@ template <class Layout>
     return static_cast<std::uint32_t>((count + share - 1) / share);
   };
   plan.input = input;
+  if (input.is_tree_image) plan.input.records = input.image.offset_by(kTreeImageHeadBytes);
   plan.vertex_items = shares(input.vertex_count, kVertexItem);
   plan.run_count = shares(n, Layout::kRunTriangles);
   plan.run_stride = round_up(plan.run_count, kRunGroup);
@@ -238,9 +262,17 @@ template <class Layout>
   const std::uint32_t top_room = (kMaxTreeDepth - 1) * shares(n, plan.piece_limit) + 1;
   const std::uint32_t piece_room = top_room * kTreeWidth;
   plan.subtree_room = 2 * shares(n, plan.piece_limit) + 2 + shares(piece_room, kBucketPieces);
-  std::uint32_t items[kBuildPassCount] = {
-      plan.vertex_items, plan.run_count, 1, plan.run_stride / kRunGroup, plan.bucket_room, 1, plan.subtree_room, 1,
-      plan.subtree_room};
+  std::uint32_t items[kBuildPassCount] = {plan.vertex_items,
+                                          plan.run_count,
+                                          1,
+                                          plan.run_stride / kRunGroup,
+                                          plan.bucket_room,
+                                          1,
+                                          plan.subtree_room,
+                                          1,
+                                          plan.subtree_room,
+                                          0};
+  if (input.image.value != 0) items[kBuildPassCount - 1] = shares(input.image_room, ImageCheckValue::kPieceBytes);
   for (std::uint32_t i = 0; i < kBuildPassCount; ++i) plan.item_counts[i] = items[i];
   std::uint64_t end = input.scratch.value;
   const auto place = [&end](std::uint64_t bytes) {
@@ -266,6 +298,7 @@ template <class Layout>
   plan.level_counts = place(sizeof(LevelCounts) * std::uint64_t{plan.subtree_room});
   plan.level_firsts = place(sizeof(LevelCounts) * std::uint64_t{plan.subtree_room});
   plan.raw_nodes = place(sizeof(TreeNode) * (raw_node_place(n, input.leaf_triangles) + 1));
+  plan.piece_checks = place(sizeof(PieceCheck) * std::uint64_t{items[kBuildPassCount - 1]});
   plan.end = end;
   return Status::kOk;
 }

@@ -38,6 +38,13 @@ enum class BuildWork : std::uint8_t {
 };
 static_assert(static_cast<std::uint32_t>(BuildWork::kEnd) <= kWorkKindCount);
 
+/// The same of the pass that checks an image, which has none of the others.
+enum class CheckWork : std::uint8_t {
+  kFirst = kSharedWorkCount,
+  kCheckedLine = kFirst,  ///< lines of the image that entered its check value
+  kEnd
+};
+
 /// A core's transfers, and the work between them.
 template <Platform P>
 class BuildTransfers : public Transfers<P> {

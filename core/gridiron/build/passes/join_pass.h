@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gridiron/build/passes/build_plan.h>
+#include <gridiron/build/passes/image_pass.h>
 #include <gridiron/build/passes/pass_tools.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_order.h>
@@ -26,6 +27,8 @@ struct JoinStore {
   alignas(128) BuildResult build;
   alignas(128) BuildState state;
   alignas(128) TopState top_state;
+  TreeImageHead image_head;
+  alignas(128) std::byte zeros[kLineBytes];
   std::uint32_t next[16];  // number of the next node of a level
 };
 
@@ -40,12 +43,26 @@ class TreeJoiner {
   [[nodiscard]] Status run() {
     GRIDIRON_TRY(count_nodes());
     GRIDIRON_TRY(number_nodes());
+    nodes_ = nodes_of(plan_, store_.state.triangle_count);
     for (std::uint32_t i = store_.top_state.top_count; i-- > 0;) GRIDIRON_TRY(make_node(i));
+    if (plan_.input.is_tree_image) GRIDIRON_TRY(write_image_head());
     GRIDIRON_TRY(transfers_.put(&store_.build, plan_.input.result, sizeof(BuildResult), kFirstOutputTag));
     return transfers_.wait(kFirstOutputTag);
   }
 
  private:
+  // Also the padding between records and nodes.
+  [[nodiscard]] Status write_image_head() {
+    make_image_head(plan_, store_.build.size, store_.image_head);
+    GRIDIRON_TRY(transfers_.put(&store_.image_head, plan_.input.image, sizeof(TreeImageHead), kFirstOutputTag));
+    const MainAddress end =
+        plan_.input.records.offset_by(std::uint64_t{store_.state.triangle_count} * sizeof(VertexTriangle));
+    const auto padding = static_cast<std::uint32_t>(nodes_.value - end.value);
+    if (padding == 0) return Status::kOk;
+    for (std::byte& byte : store_.zeros) byte = std::byte{0};
+    return transfers_.put(store_.zeros + (kLineBytes - padding), end, padding, kFirstOutputTag);
+  }
+
   [[nodiscard]] Status count_nodes() {
     std::uint32_t counts[kMaxTreeDepth] = {};
     GRIDIRON_TRY((for_each_window<LevelCounts, JoinStore::kWindow>(
@@ -175,7 +192,7 @@ class TreeJoiner {
         plan_.input.order == TreeOrder::kForAnyHit ? order_of(densities, from.child_count) : kTreeOrderByNumber;
     node.child_count = from.child_count;
     for (std::uint32_t& word : node.reserved) word = 0;
-    GRIDIRON_TRY(transfers_.put(&node, plan_.input.nodes.offset_by(std::uint64_t{from.number} * sizeof(TreeNode)),
+    GRIDIRON_TRY(transfers_.put(&node, nodes_.offset_by(std::uint64_t{from.number} * sizeof(TreeNode)),
                                 sizeof(TreeNode), kFirstOutputTag));
     const QuadBox box = QuadBox::of_node(node);
     PieceResult& own = store_.result;
@@ -193,6 +210,7 @@ class TreeJoiner {
   BuildTransfers<P>& transfers_;
   JoinStore& store_;
   const BuildPlan& plan_;
+  MainAddress nodes_{};
 };
 
 /// Writes level_firsts, the nodes above the pieces and the result. Items: one. Errors: kMemoryTooSmall.
@@ -220,6 +238,7 @@ template <class P>
 [[nodiscard]] Status run_numbers_pass(BuildTransfers<P>& transfers, NumbersStore& store, const BuildPlan& plan) {
   static constexpr std::uint32_t kNodes = NumbersStore::kNodes;
   GRIDIRON_TRY(fetch(transfers, store.top_state, plan.top_state));
+  const MainAddress nodes = nodes_of(plan, store.top_state.triangle_count);
   const auto number = [&](std::uint32_t bucket) -> Status {
     if (bucket >= store.top_state.bucket_count) return Status::kOk;
     SubtreeBucket& head = store.bucket[bucket % 2];
@@ -255,7 +274,7 @@ template <class P>
         for (std::uint32_t child = 0; child < node.child_count; ++child) {
           if (!node.children[child].is_leaf()) node.children[child].bits += store.firsts.of[level + 1];
         }
-        GRIDIRON_TRY(transfers.put(&node, plan.input.nodes.offset_by(place * sizeof(TreeNode)), sizeof(TreeNode),
+        GRIDIRON_TRY(transfers.put(&node, nodes.offset_by(place * sizeof(TreeNode)), sizeof(TreeNode),
                                    static_cast<std::uint8_t>(kFirstOutputTag + side)));
       }
     }

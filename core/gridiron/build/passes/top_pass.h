@@ -59,7 +59,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     GRIDIRON_TRY(end_bucket());
     GRIDIRON_TRY(send_pieces());
     GRIDIRON_TRY(send_buckets());
-    store_.top_state = {top_count_, piece_count_, bucket_count_, {}};
+    store_.top_state = {top_count_, piece_count_, bucket_count_, store_.state.triangle_count, {}};
     GRIDIRON_TRY(transfers_.put(&store_.top_state, plan_.top_state, sizeof(TopState), kFirstOutputTag));
     return wait_for(transfers_, kFirstOutputTag, kOutputTagCount);
   }
