@@ -40,6 +40,7 @@ GRIDIRON_PROGRAM(BuildPass::kTop)
 GRIDIRON_PROGRAM(BuildPass::kSubtrees)
 GRIDIRON_PROGRAM(BuildPass::kJoin)
 GRIDIRON_PROGRAM(BuildPass::kNumbers)
+GRIDIRON_PROGRAM(BuildPass::kCheck)
 #undef GRIDIRON_PROGRAM
 #else
 Status build_on_template_board(BuildStore<BuildLayout256K>& store, volatile EngineRegisters* engine,

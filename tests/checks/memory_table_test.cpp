@@ -1,5 +1,6 @@
 // The table of memory: measured on small builds of the cross compilers, compared with what was committed; and what must
 // not be in code for a core is refused, compiled as core is. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/passes/build_passes.h>
 #include <gridiron/store/local_store.h>
 
 #include "run_script.h"
@@ -101,6 +102,17 @@ constexpr const char* kPort =
     "#include <gridiron/store/local_store.h>\nnamespace gridiron { int helper(int);\n"
     "int render(LocalStore<StoreLayout64K<8>>& store, int x) { return 3 * helper(x + int(store.output[0].id[1])); } "
     "}\n";
+constexpr const char* kBuild64K =
+    "#include <gridiron/build/passes/build_plan.h>\nnamespace gridiron { int helper(int);\n"
+    "template <BuildPass kPass> int build_on_template_board(int x);\n"
+    "template <BuildPass kPass> int build_on_template_board(int x) {\n"
+    "  return kPass == BuildPass::kSort ? 7 * helper(x) * helper(x + 9) : x + 1; }\n"
+    "#define PASS(pass) template int build_on_template_board<BuildPass::pass>(int);\n"
+    "PASS(kBounds) PASS(kCodes) PASS(kBuckets) PASS(kCuts) PASS(kSort) PASS(kTop) PASS(kSubtrees) PASS(kJoin)\n"
+    "PASS(kNumbers) PASS(kCheck) }\n";
+constexpr const char* kBuild256K =
+    "namespace gridiron { int helper(int); int build_on_template_board(int x);\n"
+    "int build_on_template_board(int x) { return 7 * helper(x); } }\n";
 constexpr const char* kPrepare =
     "namespace gridiron { struct FrameSettings { int width; }; int helper(int);\n"
     "int make_frame_record(const FrameSettings& settings) { return 5 * helper(settings.width); } }\n";
@@ -114,9 +126,15 @@ ScriptResult measure(const ScratchDirectory& scratch, const std::string& kernel,
   scratch.write("kernel.cpp", kernel);
   scratch.write("port.cpp", kPort);
   scratch.write("prepare.cpp", prepare);
+  scratch.write("build64k.cpp", kBuild64K);
+  scratch.write("build256k.cpp", kBuild256K);
   std::string builds;
   for (const std::string& target : kTargets) {
     const std::string source = (scratch.path()).string();
+    const auto build = [&source](const std::string& layout) {
+      return "build platform/CMakeFiles/gridiron_template_build" + layout + ".dir/build.cpp.obj: compile " + source +
+             "/build" + layout + ".cpp\n";
+    };
     scratch.write(
         target + "/build.ninja",
         "rule compile\n  command = " + target + "-linux-gnu-g++ " + kFlags + " -I" + source_path("core") + " -I" +
@@ -130,7 +148,7 @@ ScriptResult measure(const ScratchDirectory& scratch, const std::string& kernel,
             source +
             "/kernel.cpp\n"
             "build core/CMakeFiles/gridiron_prepare.dir/prepare.cpp.obj: compile " +
-            source + "/prepare.cpp\n");
+            source + "/prepare.cpp\n" + build("64k") + build("256k"));
     const ScriptResult built = run_script("ninja -C " + quoted(scratch.path() / target));
     if (built.exit_code != 0) return built;
     builds += " " + quoted(scratch.path() / target);
@@ -174,6 +192,19 @@ TEST(MemoryTable, MeasuresWhatTheCompilersMade) {
     ASSERT_EQ(entry.size(), 2u) << first.output;
     EXPECT_GT(entry[0], 40);
     EXPECT_GT(entry[1], 1000);
+    // Passes of 64 KB are programs of their own: one has the helper and its stack, the others have not.
+    const std::vector<long> sort = numbers_of(first.output, target + ",build,BuildLayout64K,sort,,");
+    const std::vector<long> top = numbers_of(first.output, target + ",build,BuildLayout64K,top,,");
+    const std::vector<long> all = numbers_of(first.output, target + ",build,BuildLayout256K,all passes,,");
+    ASSERT_EQ(sort.size(), 8u) << first.output;
+    ASSERT_EQ(top.size(), 8u) << first.output;
+    ASSERT_EQ(all.size(), 8u) << first.output;
+    EXPECT_GT(sort[0], top[0] + 40);
+    EXPECT_GT(sort[3], 1000);
+    EXPECT_LT(top[3], 100);
+    EXPECT_EQ(sort[4], static_cast<long>(sizeof(BuildStore<BuildLayout64K>)));
+    EXPECT_EQ(all[4], static_cast<long>(sizeof(BuildStore<BuildLayout256K>)));
+    EXPECT_EQ(all[6], 262144);
   }
 
   // Code that grows shows in the rows that hold it, and fails.

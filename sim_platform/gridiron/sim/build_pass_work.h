@@ -49,8 +49,8 @@ inline constexpr WorkPrice kBuildPassPrices[] = {
 
 inline constexpr WorkKind kCheckPassKinds[] = {{CheckWork::kCheckedLine, "checked_line"}};
 
-// Eight times two words of 64 bits in lanes: exclusive or, and a product by 2^40 + 435 of two products of 16 bits, shifts,
-// a carry and sums: 11 even.
+// Eight times two words of 64 bits in lanes: exclusive or, and a product by 2^40 + 435 of two products of 16 bits,
+// shifts, a carry and sums: 11 even.
 inline constexpr WorkPrice kCheckPassPrices[] = {{CheckWork::kCheckedLine, 92}};
 // clang-format on
 

@@ -85,8 +85,9 @@ template <class P>
     if (first >= line_count) return Status::kOk;
     CheckValue value;
     GRIDIRON_TRY((for_each_window<Line, CheckStore::kWindow>(
-        transfers, store.lines, plan.input.image, first, first + kPieceLines < line_count ? first + kPieceLines : line_count,
-        kFirstMacroTag, [&](const Line* lines, std::uint64_t, std::uint32_t count) {
+        transfers, store.lines, plan.input.image, first,
+        first + kPieceLines < line_count ? first + kPieceLines : line_count, kFirstMacroTag,
+        [&](const Line* lines, std::uint64_t, std::uint32_t count) {
           value.add({lines->bytes, std::size_t{count} * kLineBytes});
           transfers.add_work(CheckWork::kCheckedLine, count);
           return Status::kOk;
