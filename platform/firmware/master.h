@@ -66,12 +66,8 @@ class Master {
   /// Renders a frame of a job that has been checked.
   /// @param frame_address  of its record: the job's own or another one.
   [[nodiscard]] RunExit render(const char* result_name, std::uint64_t frame_address) {
-    prepare(frame_address);
-    for (std::uint32_t core = 0; core < facts_.core_count; ++core) board_.start_core(core);
-    board_.take_part();
-    const RunExit waited = wait_for_cores();
-    if (waited != RunExit::kDone) return waited;
-    board_.take_results();
+    const RunExit ran = run_cores(frame_address, job_.tile_count);
+    if (ran != RunExit::kDone) return ran;
     const Status status = write_result();
     if (!write_host_file(result_name, reinterpret_cast<const void*>(job_.result_address), job_.result_bytes)) {
       print("the host did not take ", result_name, "\n");
@@ -82,11 +78,45 @@ class Master {
     return RunExit::kDone;
   }
 
+  /// Has the cores run a pass that is no picture; what they do is the image's own.
+  /// @param pass         its number, for the console.
+  /// @param item_count   1..facts.most_tiles.
+  /// @param stack_bytes  becomes the deepest stack, if that is deeper.
+  [[nodiscard]] RunExit run_pass(std::uint32_t pass, std::uint32_t item_count, std::uint32_t& stack_bytes) {
+    const RunExit ran = run_cores(0, item_count);
+    if (ran != RunExit::kDone) return ran;
+    std::uint32_t done = 0;
+    for (std::uint32_t core = 0; core < facts_.core_count; ++core) {
+      const CoreResult& result = control_.cores[core].result;
+      done += result.tiles;
+      stack_bytes = stack_bytes > result.stack_bytes ? stack_bytes : result.stack_bytes;
+      if (result.status == 0) continue;
+      print("pass ", pass, ", core ", core, ": status ", StatusNumber{result.status}, "\n");
+      return RunExit::kFrameFailed;
+    }
+    if (done == item_count) return RunExit::kDone;
+    print("pass ", pass, ": ", done, " of ", item_count, " items\n");
+    return RunExit::kFrameFailed;
+  }
+
  private:
-  void prepare(std::uint64_t frame_address) {
+  // Starts all cores, and waits until they have finished.
+  RunExit run_cores(std::uint64_t frame_address, std::uint32_t item_count) {
+    prepare(frame_address, item_count);
+    for (std::uint32_t core = 0; core < facts_.core_count; ++core) {
+      set_state(control_.cores[core], CoreState::kStarted);
+      board_.start_core(core);
+    }
+    board_.take_part();
+    const RunExit waited = wait_for_cores();
+    if (waited == RunExit::kDone) board_.take_results();
+    return waited;
+  }
+
+  void prepare(std::uint64_t frame_address, std::uint32_t item_count) {
     std::memset(&control_, 0, sizeof control_);
-    for (std::uint32_t tile = 0; tile < job_.tile_count; ++tile) tiles_[tile] = {kNotRun, 0, 0};
-    control_.tile_count = job_.tile_count;
+    for (std::uint32_t tile = 0; tile < item_count; ++tile) tiles_[tile] = {kNotRun, 0, 0};
+    control_.tile_count = item_count;
     control_.core_count = facts_.core_count;
     control_.frame_address = frame_address;
     control_.spill_address = job_.spill_address;
@@ -109,7 +139,7 @@ class Master {
         if (state == CoreState::kFinished) ++finished;
       }
       const std::uint32_t eighth = done * 8 / control_.tile_count;
-      if (eighth != told) print("tiles ", done, " of ", control_.tile_count, "\n");
+      if (eighth != told && control_.frame_address != 0) print("tiles ", done, " of ", control_.tile_count, "\n");
       told = eighth;
       if (finished == facts_.core_count) return RunExit::kDone;
 

@@ -14,6 +14,7 @@ enum class CoreState : std::uint32_t {
   kWorking = 1,
   kFinished = 2,  ///< its result is complete
   kTrapped = 3,   ///< its trap is complete; it does not return
+  kStarted = 4,   ///< the master wants it to work: a core that is woken otherwise goes back to sleep
 };
 
 /// The cause of a trap, in the registers of the core.

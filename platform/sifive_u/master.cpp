@@ -13,6 +13,9 @@
 #include "scene_workshop.h"
 #include "shared_memory.h"
 #include "wrong_ports.h"
+#ifdef GRIDIRON_MOVING
+#include "moving_frames.h"
+#endif
 
 namespace gridiron::port {
 
@@ -48,11 +51,13 @@ class Monitor {
 #endif
     hush_hart(0);
   }
-  [[nodiscard]] std::uint64_t milliseconds() { return clock_ticks() / kTicksPerMillisecond; }
+  [[nodiscard]] std::uint64_t milliseconds() {
+    return clock_ticks() / kTicksPerMillisecond;
+  }
   void take_results() {
     asm volatile("fence" ::: "memory");
 #ifdef GRIDIRON_ASYNC
-    print("the master made ", engine_.done(), " transfers\n");
+    if (shared_memory.control.frame_address != 0) print("the master made ", engine_.done(), " transfers\n");
 #endif
   }
 
@@ -118,16 +123,19 @@ void gridiron_master() {
 #else
   constexpr std::uint32_t kCores = GRIDIRON_WORKERS;
 #endif
-  const FirmwareFacts facts = firmware_facts<FirmwareLayout, FirmwareLanes>(
-      "gridiron sifive_u " GRIDIRON_IMAGE, kCores, GRIDIRON_MEMORY_END, kMostTiles);
+  const FirmwareFacts facts = firmware_facts<FirmwareLayout, FirmwareLanes>("gridiron sifive_u " GRIDIRON_IMAGE, kCores,
+                                                                            GRIDIRON_MEMORY_END, kMostTiles);
   Monitor monitor;
 #ifdef GRIDIRON_TRESPASS
   shared_memory.trespass = wanted_trespass(kTrespassCount);
 #endif
   const auto& job = *reinterpret_cast<const FrameJob*>(GRIDIRON_JOB);
   Master<Monitor> master(monitor, facts, job, shared_memory.control, shared_memory.tiles);
-#ifdef GRIDIRON_DYNAMIC
+#if defined(GRIDIRON_DYNAMIC)
   exit_run(static_cast<std::uint32_t>(render_animated(monitor, master, facts, job)));
+#elif defined(GRIDIRON_MOVING)
+  exit_run(static_cast<std::uint32_t>(render_moving(monitor, master, facts, job, shared_memory.moving,
+                                                    GRIDIRON_WORKSHOP, GRIDIRON_WORKSHOP + GRIDIRON_WORKSHOP_BYTES)));
 #else
   exit_run(static_cast<std::uint32_t>(master.run("result.bin")));
 #endif

@@ -23,9 +23,9 @@
 #define GRIDIRON_SHARED 0x80080000     /* what master and workers share */
 #define GRIDIRON_SHARED_BYTES 0x20000
 #define GRIDIRON_JOB 0x81000000        /* where a job is loaded */
-#define GRIDIRON_WORKSHOP 0x88000000   /* where worker 0 builds scenes, in the dynamic image */
+#define GRIDIRON_WORKSHOP 0x88000000   /* where worker 0, or in the moving image all, build scenes */
 #define GRIDIRON_WORKSHOP_BYTES 0x8000000
-#ifdef GRIDIRON_DYNAMIC
+#if defined(GRIDIRON_DYNAMIC) || defined(GRIDIRON_MOVING)
 #define GRIDIRON_MEMORY_END GRIDIRON_WORKSHOP
 #else
 #define GRIDIRON_MEMORY_END 0x90000000 /* of the 256 MB that this firmware counts on */

@@ -9,6 +9,7 @@
 
 #include "clint.h"
 #include "memory_map.h"
+#include "moving_frame.h"
 #include "run_control.h"
 #include "transfer_desk.h"
 
@@ -23,6 +24,7 @@ struct SharedMemory {
   std::uint32_t must_build;              ///< of the dynamic image: 1 where worker 0 is woken to build a scene
   std::uint32_t animation_frame;         ///< which
   std::uint32_t build_status;            ///< Status of the build, or kNotRun while it runs
+  MovingFrame moving;                    ///< of the moving image
   TileResult tiles[kMostTiles];
 };
 static_assert(sizeof(SharedMemory) <= GRIDIRON_SHARED_BYTES);

@@ -15,6 +15,9 @@
 #ifdef GRIDIRON_DYNAMIC
 #include "build_scene.h"
 #endif
+#ifdef GRIDIRON_MOVING
+#include "moving_frames.h"
+#endif
 
 namespace gridiron::port {
 
@@ -35,19 +38,26 @@ static_assert(InstructionCounter<CountedPort>);
 
 static_assert(FirmwareLayout::kArenaBytes == GRIDIRON_ARENA_BYTES);
 
+#ifdef GRIDIRON_MOVING
+using WorkerStore = MovingStore<FirmwareLayout>;
+#else
+using WorkerStore = FirmwareStore;
+#endif
+
 // The linker script adds these up.
-alignas(128) [[gnu::section(".bss.arena_store"), gnu::used]] std::byte arena_store[sizeof(FirmwareStore)];
+alignas(128) [[gnu::section(".bss.arena_store"), gnu::used]] std::byte arena_store[sizeof(WorkerStore)];
 [[gnu::section(".bss.arena_stack"), gnu::used]] std::byte arena_stack[FirmwareLayout::kStackBudgetBytes];
 
 extern "C" {
 
 void gridiron_worker(std::uint64_t core, std::uintptr_t arena);
 
-/// Harts 1 to 4, from start.S, when the master has woken them.
+/// Harts 1 to 4, from start.S, when they have been woken: by the master, or late for a transfer that they no longer
+/// waited for.
 void gridiron_worker(std::uint64_t core, std::uintptr_t arena) {
   const auto core_index = static_cast<std::uint32_t>(core);
   SharedMemory& shared = shared_memory;
-  auto& store = *reinterpret_cast<FirmwareStore*>(arena);
+  auto& store = *reinterpret_cast<WorkerStore*>(arena);
   const StackArea stack{arena + sizeof store, arena + GRIDIRON_ARENA_BYTES};
 #ifdef GRIDIRON_DYNAMIC
   if (shared.must_build != 0) {
@@ -59,6 +69,7 @@ void gridiron_worker(std::uint64_t core, std::uintptr_t arena) {
     return;
   }
 #endif
+  if (state_of(shared.control.cores[core_index]) != CoreState::kStarted) return;
 #ifdef GRIDIRON_TRESPASS
   trespass(core_index, arena);
 #endif
@@ -72,9 +83,11 @@ void gridiron_worker(std::uint64_t core, std::uintptr_t arena) {
   TemplatePort<PdmaBoard> port(board);
 #endif
 #endif
-#ifdef GRIDIRON_FORGETFUL
+#if defined(GRIDIRON_FORGETFUL)
   ForgetfulPort wrong(port);
   run_worker<FirmwareLanes>(store, wrong, shared.control, shared.tiles, core_index, stack);
+#elif defined(GRIDIRON_MOVING)
+  run_moving_worker<FirmwareLanes>(store, port, shared.control, shared.tiles, core_index, stack, shared.moving);
 #else
   run_worker<FirmwareLanes>(store, port, shared.control, shared.tiles, core_index, stack);
 #endif

@@ -1,13 +1,12 @@
 // The contract checks on the board: on all workers at the same time, each with its arena and 64 KB of main memory in
 // place of a job. In this image alone PMP lets a worker read them directly.
 // Memory: arenas, 384 KB of main memory. Threads: all harts. SPDX-License-Identifier: Apache-2.0
-#include "contract_checks.h"
-
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 
 #include "board.h"
+#include "contract_checks.h"
 #include "engine.h"
 #include "master_board.h"
 #include "memory_map.h"
@@ -105,7 +104,7 @@ void gridiron_worker(std::uint64_t core_index) {
     }
   });
   set_state(gridiron_shared.control.cores[core], CoreState::kFinished);
-  finish();
+  for (;;) finish();
 }
 
 }  // namespace gridiron::port

@@ -49,8 +49,15 @@ bool is_in_arena(std::uint64_t address, std::uint64_t bytes) {
   for (;;) asm volatile("wfi");
 }
 
+void sleep_until_called(std::uint32_t hart) {
+  while (!is_called()) sleep_hart(false);
+  hush_hart(hart);
+}
+
 // pmpaddr of a region whose size is a power of two and whose address a multiple of it.
-constexpr std::uint64_t region(std::uint64_t address, std::uint64_t bytes) { return (address | (bytes / 2 - 1)) >> 2; }
+constexpr std::uint64_t region(std::uint64_t address, std::uint64_t bytes) {
+  return (address | (bytes / 2 - 1)) >> 2;
+}
 
 // Opens the memory that user mode may touch on this hart; without an entry it may not.
 void open_memory(std::uint32_t core) {
@@ -73,15 +80,15 @@ void open_memory(std::uint32_t core) {
 void gridiron_boot_worker(std::uint64_t hart) {
   const auto core = static_cast<std::uint32_t>(hart - 1);
   open_memory(core);
-  while (!is_called()) sleep_hart(false);
-  hush_hart(static_cast<std::uint32_t>(hart));
+  sleep_until_called(static_cast<std::uint32_t>(hart));
   gridiron_enter_worker(core, stack_of(core).top);
 }
 
 std::uint64_t gridiron_serve(std::uint64_t target, std::uint64_t source, std::uint64_t bytes, Call call) {
   if (call == Call::kFinished) {
     wake_hart(0);
-    sleep_for_ever();
+    sleep_until_called(this_hart());
+    return 0;
   }
   if (call != Call::kCopy) return 0;
   const bool is_get = is_in_arena(target, bytes) && is_in_main(source, bytes);

@@ -10,14 +10,14 @@ namespace gridiron::port {
 /// Services of machine mode for a worker.
 enum class Call : std::uint64_t {
   kCopy = 1,      ///< target, source, bytes: 1 when it was made, 0 when it was refused
-  kFinished = 2,  ///< the frame is done; does not return
+  kFinished = 2,  ///< its share is done: returns when the master wakes the worker again
 };
 
 extern "C" {
 
 /// Hart 0, in firmware.cpp or contract.cpp.
 [[noreturn]] void gridiron_master();
-/// Worker `core_index` once the master has woken it, in user mode; in the same file.
+/// Worker `core_index` once the master has woken it, in user mode; in the same file. Works, finishes, and begins anew.
 [[noreturn]] void gridiron_worker(std::uint64_t core_index);
 
 /// A worker's call, in user mode.
@@ -27,10 +27,9 @@ std::uint64_t gridiron_call(std::uint64_t target, std::uint64_t source, std::uin
 [[noreturn]] void gridiron_enter_worker(std::uint64_t core_index, std::uintptr_t stack_top);
 }
 
-/// Ends a worker's frame: notifies the master, and does not return.
-[[noreturn]] inline void finish() {
+/// Ends a worker's share: notifies the master, and sleeps until that wakes the worker again.
+inline void finish() {
   gridiron_call(0, 0, 0, Call::kFinished);
-  __builtin_trap();
 }
 
 }  // namespace gridiron::port

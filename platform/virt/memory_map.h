@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "moving_frame.h"
 #include "run_control.h"
 
 namespace gridiron::port {
@@ -23,6 +24,9 @@ struct alignas(kArenaBytes) Arena {
   std::byte bytes[kArenaBytes];
 };
 
+/// Where frames that move have memory of their own, to the end of the job's: their image's jobs end here.
+inline constexpr std::uintptr_t kMovingFrames = 0x88000000;
+
 /// Results of the contract checks on a worker.
 struct ContractReport {
   std::uint32_t checks;
@@ -38,6 +42,7 @@ struct alignas(kSharedBytes) SharedMemory {
   RunControl control;
   std::uint64_t trespass;                ///< which forbidden access the image for such accesses makes
   ContractReport reports[kWorkerCount];  ///< of the image of the contract checks
+  MovingFrame moving;                    ///< of the image of frames that move
   TileResult tiles[kMostTiles];
 };
 static_assert(sizeof(SharedMemory) == kSharedBytes);
@@ -50,6 +55,8 @@ extern SharedMemory gridiron_shared;
 extern const std::byte code_begin[], code_end[], job_begin[], job_end[];
 }
 
-[[nodiscard]] inline std::uint64_t address_of(const void* place) { return reinterpret_cast<std::uintptr_t>(place); }
+[[nodiscard]] inline std::uint64_t address_of(const void* place) {
+  return reinterpret_cast<std::uintptr_t>(place);
+}
 
 }  // namespace gridiron::port

@@ -1,5 +1,6 @@
 // A worker's arena: its stack at the bottom, so that one that is too deep leaves the arena and traps, then its store.
-// The build defines GRIDIRON_PACKET_WIDTH and GRIDIRON_EFFECTS, and GRIDIRON_CONTRACT for the contract checks.
+// The build defines GRIDIRON_PACKET_WIDTH and GRIDIRON_EFFECTS, GRIDIRON_CONTRACT for the contract checks, and
+// GRIDIRON_MOVING for frames of a mesh that moves.
 // Memory: gridiron_arenas. Threads: each worker its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,6 +10,9 @@
 #include "layout_256k.h"
 #include "memory_map.h"
 #include "stack_paint.h"
+#ifdef GRIDIRON_MOVING
+#include "moving_frames.h"
+#endif
 
 namespace gridiron::port {
 
@@ -25,9 +29,15 @@ inline constexpr bool kHasWindow = false;
 inline constexpr std::size_t kWorkerStackBytes = FirmwareLayout::kStackBudgetBytes;
 static_assert(kWorkerStackBytes % 128 == 0, "the store begins on 128 bytes");
 
+#ifdef GRIDIRON_MOVING
+using WorkerStore = MovingStore<FirmwareLayout>;
+#else
+using WorkerStore = FirmwareStore;
+#endif
+
 struct WorkerArena {
   std::byte stack[kWorkerStackBytes];
-  FirmwareStore store;
+  WorkerStore store;
 };
 static_assert(sizeof(WorkerArena) <= kArenaBytes);
 

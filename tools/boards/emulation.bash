@@ -66,7 +66,7 @@ emulate() {
   trap 'kill $emulator 2> /dev/null || true; rm -rf "$work"' EXIT
   trap 'exit 130' INT
   trap 'exit 143' TERM HUP
-  rm -f -- "$result"
+  rm -f -- "$result" "$result".[0-9]
   ln -s "$(realpath "$job")" "$work/job.bin"
   ln -s "$(realpath "$elf")" "$work/firmware.elf"
   (
@@ -90,6 +90,11 @@ emulate() {
     exit 125
   fi
   if [ -f "$work/result.bin" ]; then mv -- "$work/result.bin" "$result"; fi
+  local each number
+  for each in "$work"/result_*.bin; do  # of several frames
+    number=${each##*_}
+    if [ -f "$each" ]; then mv -- "$each" "$result.${number%.bin}"; fi
+  done
   [ $status -ne 124 ] || echo "$me: stopped after $limit s" >&2
   exit $status
 }
