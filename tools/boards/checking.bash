@@ -94,6 +94,26 @@ break_record() {
   seal "$1"
 }
 
+# moving_series RUN IMAGE JOB OPTIONS...: jobs of eight frames of the mesh that moves, made with JOB's words, and their
+# results, which `RUN FRAME-0-JOB --image IMAGE --option first=0 --option frames=8` leaves as $work/result.0 and so on:
+# each is what the simulated chip makes of the host's image, and not of the next frame's. Words in $work/log; ends with 1
+# where it is otherwise.
+moving_series() {
+  local run=$1 image=$2 frame
+  shift 2
+  for frame in 0 1 2 3 4 5 6 7; do
+    [ -f "$work/moving.$frame.job" ] && continue
+    "$(dirname "$gridiron")/make_mesh" --shape wave --frame $frame -o "$work/moving.ply" > "$work/log" &&
+      "$gridiron" job "$work/moving.ply" --configuration best --base 0x81000000 --memory 117440512 --size 96x96 --depth \
+        --ids --eye 1.5,2,3 --at 0,0.2,0 --quiet -o "$work/moving.$frame.job" "$@" > "$work/log" 2>&1 || return 1
+  done
+  "$run" "$work/moving.0.job" --image "$image" --option first=0 --option frames=8 || return 1
+  for frame in 0 1 2 3 4 5 6 7; do
+    compare_result "$work/moving.$frame.job" "$work/result.$frame" "$work/log" 0 || return 1
+  done
+  compare_result "$work/moving.3.job" "$work/result.4" "$work/log" 3
+}
+
 # A check of one frame after the other, of check_virt and check_zcu102. They set `base`, `memory` and `cores` of the jobs.
 # The words of each run are in NAME.log.
 
