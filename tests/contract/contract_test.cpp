@@ -31,7 +31,7 @@ class HostBench {
   sim::SimMemory memory_;
   sim::MemoryRegion region_;
   std::unique_ptr<Arena> arena_ = std::make_unique<Arena>();
-  sim::TileSource tiles_;
+  sim::ItemSource tiles_;
   PlatformLimits limits_;
 };
 

@@ -62,7 +62,7 @@ struct CoreRun {
   std::uint32_t tile = kNoTile;  ///< that the status belongs to
 };
 
-void run_core(CoreRun& run, const GuardedArena& arena, const CoreProgram& program, TileSource& tiles) {
+void run_core(CoreRun& run, const GuardedArena& arena, const CoreProgram& program, ItemSource& tiles) {
   SimCore& core = *run.core;
   const Status returned = program(core, arena.data());
   const std::uint32_t last_tile = core.tile_id();
@@ -153,7 +153,7 @@ namespace {
   }
   const std::uint32_t first_tile = one_tile ? *options.only_tile : 0;
   const std::uint32_t end_tile = one_tile ? first_tile + 1 : shape.tile_count;
-  TileSource tiles(first_tile, end_tile, options.abort, options.progress);
+  ItemSource tiles(first_tile, end_tile, options.abort, options.progress);
 
   SimFrame frame;
   frame.memory = &memory;
@@ -255,7 +255,7 @@ ChipResult run_plain_cores(SimMemory& memory, const FrameShape& shape, const Chi
   ChipResult result;
   const bool one_tile = options.only_tile.has_value();
   const std::uint32_t first_tile = one_tile ? *options.only_tile : 0;
-  TileSource tiles(first_tile, one_tile ? first_tile + 1 : shape.tile_count, options.abort, options.progress);
+  ItemSource tiles(first_tile, one_tile ? first_tile + 1 : shape.tile_count, options.abort, options.progress);
 
   struct FreeArena {
     void operator()(std::byte* bytes) const { ::operator delete (bytes, std::align_val_t{kLineBytes}); }

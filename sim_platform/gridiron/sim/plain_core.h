@@ -4,7 +4,7 @@
 #pragma once
 
 #include <gridiron/platform/contract.h>
-#include <gridiron/sim/tile_source.h>
+#include <gridiron/sim/item_source.h>
 #include <gridiron/store/local_store.h>
 
 #include <cassert>
@@ -22,7 +22,7 @@ class PlainCore {
  public:
   /// @param base   host address of main address 0.
   /// @param spill  the core's own.
-  PlainCore(std::byte* base, const PlatformLimits& limits, TileSource& tiles, SpillRegion spill = {})
+  PlainCore(std::byte* base, const PlatformLimits& limits, ItemSource& tiles, SpillRegion spill = {})
       : base_(base), limits_(limits), tiles_(&tiles), spill_(spill) {}
 
   [[nodiscard]] PlatformLimits limits() const { return limits_; }
@@ -54,7 +54,7 @@ class PlainCore {
   }
 
   ItemClaim claim_item() {
-    if (busy_) tiles_->tile_done();
+    if (busy_) tiles_->item_done();
     const ItemClaim claim = tiles_->claim();
     busy_ = claim.kind == ItemClaim::Kind::kItem;
     if (busy_) tile_id_ = claim.item;
@@ -68,7 +68,7 @@ class PlainCore {
  private:
   std::byte* base_;
   PlatformLimits limits_;
-  TileSource* tiles_;
+  ItemSource* tiles_;
   SpillRegion spill_;
   std::uint64_t transfers_ = 0;
   std::uint32_t tile_id_ = 0;

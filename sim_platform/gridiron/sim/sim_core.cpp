@@ -210,7 +210,7 @@ void SimCore::leave_tile() {
   if (!in_tile_) return;
   in_tile_ = false;
   ++tile_ordinal_;
-  frame_->tiles->tile_done();
+  frame_->tiles->item_done();
 }
 
 ItemClaim SimCore::claim_item() {

@@ -6,7 +6,7 @@
 #include <gridiron/platform/contract.h>
 #include <gridiron/sim/sim_chip.h>
 #include <gridiron/sim/sim_memory.h>
-#include <gridiron/sim/tile_source.h>
+#include <gridiron/sim/item_source.h>
 #include <gridiron/sim/trace.h>
 #include <gridiron/store/local_store.h>
 
@@ -36,7 +36,7 @@ class TraceWriter;
 /// Shared by the cores of one frame. Constant while cores run, except for the counter and the lock.
 struct SimFrame {
   SimMemory* memory = nullptr;
-  TileSource* tiles = nullptr;
+  ItemSource* tiles = nullptr;
   std::vector<MainRange> writable;  ///< where puts may go; sorted, disjoint
   SpillMemory spill;                ///< a slice a core, apart from writable; checked by run_cores
   std::uint32_t core_count = 1;     ///< slices of spill

@@ -7,7 +7,7 @@
 #include <gridiron/sim/plain_core.h>
 #include <gridiron/sim/render_entry.h>
 #include <gridiron/sim/sim_memory.h>
-#include <gridiron/sim/tile_source.h>
+#include <gridiron/sim/item_source.h>
 
 #include <new>
 
@@ -51,7 +51,7 @@ class DeviceCore {
     std::memset(arena_.get(), 0, job_.store_bytes);
     sim::PlainCore* claiming = nullptr;
     std::uint64_t told = 0;
-    sim::TileSource source(first, end, nullptr, [&](std::uint32_t done, std::uint32_t) {
+    sim::ItemSource source(first, end, nullptr, [&](std::uint32_t done, std::uint32_t) {
       const std::uint32_t tile = first + done - 1;
       tiles[tile] = {index_, static_cast<std::uint32_t>(claiming->transfers() - told), 1 + std::uint64_t{tile}};
       told = claiming->transfers();

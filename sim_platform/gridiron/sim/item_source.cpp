@@ -1,10 +1,10 @@
-// Tile source: functions that may throw, in code built with exceptions, which the kernel's builds are not.
+// Item source: functions that may throw, in code built with exceptions, which the kernel's builds are not.
 // SPDX-License-Identifier: Apache-2.0
-#include <gridiron/sim/tile_source.h>
+#include <gridiron/sim/item_source.h>
 
 namespace gridiron::sim {
 
-void TileSource::tile_done() {
+void ItemSource::item_done() {
   if (!progress_) return;
   const std::scoped_lock lock(progress_mutex_);
   ++done_;
