@@ -99,8 +99,9 @@ struct Window {
 }
 
 /// Runs every order of a window; each(outcome) is given all of them. @returns how many.
-template <class Each>
-std::uint64_t run_orders(OrderFrame& frame, const Window& window, Each&& each) {
+/// @param frame  OrderFrame, or what else has its run().
+template <class Frame, class Each>
+std::uint64_t run_orders(Frame& frame, const Window& window, Each&& each) {
   Odometer odometer;
   std::uint64_t orders = 0;
   OrderPlan plan;
