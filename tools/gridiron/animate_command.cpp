@@ -29,10 +29,12 @@ namespace gridiron::tool {
 namespace {
 
 constexpr const char* kTableName = "animation.csv";
+constexpr const char* kPassesName = "animation_passes.csv";
+constexpr const char* kPlotName = "animation.svg";
 constexpr const char* kLogName = "animation.log";
 
 std::vector<std::string> names_of(const FrameMaker& maker) {
-  std::vector<std::string> names = {kTableName, kLogName};
+  std::vector<std::string> names = {kTableName, kPassesName, kPlotName, kLogName};
   for (std::size_t i = 0; i < maker.count(); ++i) names.push_back(maker.picture_of(i));
   return names;
 }
@@ -143,7 +145,10 @@ std::vector<NamedFrame> Animation::named_frames() const {
 
 void Animation::write_table(bool is_last) const {
   AtomicFiles table;
-  table.add(request_.output / kTableName, table_of(named_frames(), *request_.render.scene.machine));
+  const std::vector<NamedFrame> frames = named_frames();
+  table.add(request_.output / kTableName, table_of(frames, *request_.render.scene.machine));
+  if (const std::string passes = passes_of(frames); !passes.empty()) table.add(request_.output / kPassesName, passes);
+  table.add(request_.output / kPlotName, plot_of(frames));
   if (is_last) {
     table.commit_at_end();
   } else {

@@ -29,7 +29,7 @@ class CameraMove final : public FrameMaker {
   CameraMove(const AnimateRequest& request, const std::filesystem::path& input) : animate_(request) {
     request_ = request.render;
     request_.scene.input = input;
-    check_foreseen(request_, input);
+    check_foreseen(request, input);
     if (request.path) path_ = read_camera_path(*request.path);
   }
 
@@ -80,6 +80,7 @@ void CameraMove::prepare() {
   take_grid_without_bounds(request_, frame_, views_);
   tell_frame_notes(request_, frame_);
   const bool is_packed = std::holds_alternative<PackedScene>(frame_.input.content);
+  if (!is_packed) choose_builder(animate_, frame_.plan);
   if (!is_packed) build_.structure = frame_.plan.engine == EngineId::kTree ? "tree" : "grid";
 }
 
@@ -92,6 +93,8 @@ void CameraMove::build() {
   if (std::holds_alternative<PackedScene>(frame_.input.content)) {
     prepare_frame(*memory_, std::move(frame_.input), frame_.plan, views_[view]);
   } else {
+    std::optional<VertexOrder> order;
+    if (!animate_.keeps_vertex_order) memory_->vertex_order = &order;
     prepare_frame(*memory_, frame_.input, frame_.plan, views_[view]);
     build_.cost = cost_of_build(frame_.input, *memory_, frame_.plan);
   }

@@ -65,11 +65,25 @@ std::unique_ptr<FrameMaker> make_frame_maker(const AnimateRequest& request) {
   return make_camera_move(request, inputs.front());
 }
 
-void check_foreseen(const RenderRequest& request, const std::filesystem::path& input) {
-  RenderRequest frame = request;
+void check_foreseen(const AnimateRequest& request, const std::filesystem::path& input) {
+  RenderRequest frame = request.render;
   frame.scene.input = input;
   const KnownScene scene = foreseen_scene(frame.scene);
-  if (scene.kind != SceneKind::kUnknown) (void)resolve(frame, scene, this_host());
+  if (scene.kind == SceneKind::kUnknown) return;
+  RenderPlan plan = resolve(frame, scene, this_host());
+  if (scene.kind != SceneKind::kPacked) choose_builder(request, plan);
+}
+
+void choose_builder(const AnimateRequest& request, RenderPlan& plan) {
+  if (request.builder == Builder::kMaster) return;
+  if (cores_can_build(plan)) {
+    plan.builder = Builder::kCores;
+  } else if (request.builder == Builder::kCores) {
+    usage_error(plan.engine == EngineId::kTree
+                    ? "--build cores: builds trees of vertices as they are, not of --accuracy compact"
+                    : "--build cores: builds trees; configuration " + std::string(plan.scene.configuration->name) +
+                          " reads a grid, which the general core builds");
+  }
 }
 
 void require_renderable(const SceneInput& input) {
@@ -104,6 +118,7 @@ MadeFrame render_frame(FrameMemory& memory, const RenderPlan& plan, std::uint64_
   made.figures.triangles = memory.image.header.triangle_count;
   if (memory.image.has_grid) made.figures.lambda = memory.image.grid.lambda;
   made.figures.build = build;
+  if (build && build->builder == Builder::kCores) add_picture(timing, *plan.scene.machine, *made.figures.build);
   made.figures.render_cycles = timing.frame_cycles;
   made.figures.render_seconds = timing.seconds;
   const Picture<std::uint32_t> color = words_of_plane(memory.record, memory.color.bytes);

@@ -65,7 +65,10 @@ class FrameMaker {
 // What both do.
 
 /// Throws Failure (kUsage) if no frame of a scene of that kind can be rendered as requested, before it is read.
-void check_foreseen(const RenderRequest& request, const std::filesystem::path& input);
+void check_foreseen(const AnimateRequest& request, const std::filesystem::path& input);
+
+/// Says in a plan what builds the tree. Errors: Failure (kUsage) if that is not possible.
+void choose_builder(const AnimateRequest& request, RenderPlan& plan);
 
 /// Throws Failure (kBadInput) if a mesh or text scene cannot be rendered at all.
 void require_renderable(const SceneInput& input);
@@ -76,7 +79,8 @@ void require_renderable(const SceneInput& input);
 /// @returns the camera of a view with eye and at.
 [[nodiscard]] Camera camera_of(const ViewRequest& view, std::uint32_t width, std::uint32_t height);
 
-/// Renders a prepared frame. @param build  for its figures.
+/// Renders a prepared frame. @param build  for its figures; where the cores build for each frame, the begin and end of
+/// the picture's pass are added to it.
 [[nodiscard]] MadeFrame render_frame(FrameMemory& memory, const RenderPlan& plan, std::uint64_t content,
                                      const std::optional<BuildCost>& build, const FrameProgress& progress);
 

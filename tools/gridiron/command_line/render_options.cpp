@@ -200,6 +200,13 @@ Finish add_animate(CLI::App& app) {
   };
   add_parsed(app, "--fps", animate.frames_per_second, rate, "a number from 0.01 to 1000", "NUMBER",
              "frames a second of the film (default 24)");
+  add_choice(app, "--build", animate.builder,
+             Choices<Builder>{{"cores", Builder::kCores}, {"master", Builder::kMaster}},
+             "what builds the tree of each frame: the cores, whose passes are counted (default with best), or the "
+             "general core, whose time for a tree is not counted; it also builds all grids");
+  app.add_flag("--keep-vertex-order", animate.keeps_vertex_order,
+               "the cores read vertices in the order of the file; by default they are put in an order of space once, "
+               "when they are loaded");
   app.add_flag("--resume", animate.resume,
                "keep the complete pictures of an earlier command with the same options and inputs");
   add_tolerance(app, render.scene);
