@@ -117,7 +117,8 @@ void Animation::render() {
   for (std::size_t i = 0; i < figures_.size(); ++i) {
     if (figures_[i]) continue;
     progress.wipe();  // notes may come
-    const MadeFrame made = maker_->make(i, [&](double share) { progress.update(done, missing, share); });
+    const MadeFrame made =
+        maker_->make(i, request_.timeline && i == 0, [&](double share) { progress.update(done, missing, share); });
     progress.wipe();
     write_frame(i, made);
     tell_note(maker_->input_of(i), made.note);
@@ -130,6 +131,7 @@ void Animation::write_frame(std::size_t i, const MadeFrame& made) {
   log_.begin();
   AtomicFiles file;
   file.add(picture_path(i), made.png);
+  if (!made.timeline.empty()) file.add(*request_.timeline, made.timeline);
   file.commit();
   log_.add(i, {.line = 0, .source = made.source, .picture = content_hash(made.png), .figures = made.figures});
   figures_[i] = made.figures;
@@ -184,7 +186,10 @@ void run_command(const AnimateRequest& request) {
   if (request.film) require_ffmpeg(*request.film);
   Animation animation(request);
   OutputFolder folder(request.output, names_of(animation.maker()));
-  if (request.film) declare_outputs({{"--film", *request.film, OutputKind::kFilm}});
+  std::vector<Output> outputs;
+  if (request.film) outputs.push_back({"--film", *request.film, OutputKind::kFilm});
+  if (request.timeline) outputs.push_back({"--timeline", *request.timeline, OutputKind::kText});
+  declare_outputs(outputs);
   {
     const StageLines stages(!request.render.scene.quiet);
     animation.maker().prepare();

@@ -75,7 +75,7 @@ inline constexpr EngineWork kCheckPassWork =
 
 /// @returns the stable snake_case name of a pass.
 [[nodiscard]] constexpr std::string_view name_of(BuildPass pass) {
-  constexpr std::string_view kNames[] = {"bounds", "codes",     "buckets", "cuts",    "sort",
+  constexpr std::string_view kNames[] = {"bounds", "codes",    "buckets", "cuts",    "sort",
                                          "top",    "subtrees", "join",    "numbers", "check"};
   static_assert(std::size(kNames) == kBuildPassCount);
   return kNames[static_cast<std::uint32_t>(pass)];

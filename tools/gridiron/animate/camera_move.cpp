@@ -41,7 +41,7 @@ class CameraMove final : public FrameMaker {
   [[nodiscard]] FrameSource source_of(std::size_t i) override {
     return {content_, hash_of_view(camera(i), frame_.plan.width, frame_.plan.height)};
   }
-  [[nodiscard]] MadeFrame make(std::size_t i, const FrameProgress& progress) override;
+  [[nodiscard]] MadeFrame make(std::size_t i, bool has_timeline, const FrameProgress& progress) override;
   [[nodiscard]] std::optional<SingleBuild> single_build() const override { return build_; }
 
  private:
@@ -100,10 +100,10 @@ void CameraMove::build() {
   }
 }
 
-MadeFrame CameraMove::make(std::size_t i, const FrameProgress& progress) {
+MadeFrame CameraMove::make(std::size_t i, bool has_timeline, const FrameProgress& progress) {
   if (!memory_) build();
   aim_camera(*memory_, camera(i), request_.scene.input);
-  MadeFrame made = render_frame(*memory_, frame_.plan, content_, BuildCost{}, progress);
+  MadeFrame made = render_frame(*memory_, frame_.plan, content_, BuildCost{}, has_timeline, progress);
   if (made.note) made.note = "frame " + std::to_string(i) + ": " + *made.note;
   return made;
 }

@@ -38,9 +38,8 @@ BuildCost cost_of_cores(const CoresBuild& build, const RenderPlan& plan) {
   BuildCost cost{.builder = Builder::kCores};
   for (const sim::PassTiming& pass : timing.passes) cost.passes.push_back(figures_of(pass));
   PassFigures& master = cost.passes.emplace_back();
-  master.name = "check_value";
-  master.run_cycles =
-      sim::build_seconds(machine.master, sim::image_check_work(build.piece_count)) * machine.clock_hz;
+  master.name = kMasterPass;
+  master.run_cycles = cycles_of_master(build, machine);
   for (const PassFigures& pass : cost.passes) cost.cycles += pass.cycles();
   cost.seconds = cost.cycles / machine.clock_hz;
   return cost;
@@ -118,6 +117,10 @@ std::optional<BuildCost> cost_of_build(const SceneInput& input, const FrameMemor
   return BuildCost{sim::build_cycles(master, work), sim::build_seconds(master, work), Builder::kMaster};
 }
 
+double cycles_of_master(const CoresBuild& build, const sim::MachineProfile& machine) {
+  return sim::build_seconds(machine.master, sim::image_check_work(build.piece_count)) * machine.clock_hz;
+}
+
 void add_picture(const sim::FrameTiming& picture, const sim::MachineProfile& machine, BuildCost& build) {
   const sim::PassTiming pass = sim::timing_of_pass("picture", picture, machine);
   build.passes.push_back(figures_of(pass));
@@ -131,7 +134,8 @@ std::string_view PassFigures::binding() const {
 }
 
 std::string passes_of(const std::vector<NamedFrame>& frames) {
-  std::string table = "frame,pass,items,begin_cycles,start_cycles,run_cycles,barrier_cycles,cycles,one_core_cycles,binding";
+  std::string table =
+      "frame,pass,items,begin_cycles,start_cycles,run_cycles,barrier_cycles,cycles,one_core_cycles,binding";
   for (std::size_t limit = 0; limit < sim::kPassLimitCount; ++limit) {
     table.append(",").append(sim::name_of(static_cast<sim::PassLimit>(limit))).append("_limit_cycles");
   }
@@ -197,7 +201,8 @@ std::string plot_of(const std::vector<NamedFrame>& frames) {
 
 std::string table_of(const std::vector<NamedFrame>& frames, const sim::MachineProfile& machine) {
   std::string table =
-      "frame,mesh,triangles,lambda,builder,build_cycles,render_cycles,total_cycles,build_seconds,render_seconds,seconds,fps,"
+      "frame,mesh,triangles,lambda,builder,build_cycles,render_cycles,total_cycles,build_seconds,render_seconds,"
+      "seconds,fps,"
       "hash\n";
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FrameFigures& figures = frames[i].figures;
@@ -208,9 +213,10 @@ std::string table_of(const std::vector<NamedFrame>& frames, const sim::MachinePr
     };
     for (const std::string& field :
          {shortest_text(i), in_csv(frames[i].mesh), shortest_text(figures.triangles),
-          figures.lambda ? shortest_text(*figures.lambda) : std::string(), word_of_builder(figures.build), of_build(&BuildCost::cycles),
-          shortest_text(figures.render_cycles), shortest_text(total_cycles), of_build(&BuildCost::seconds),
-          shortest_text(figures.render_seconds), shortest_text(figures.seconds()), shortest_text(figures.fps())}) {
+          figures.lambda ? shortest_text(*figures.lambda) : std::string(), word_of_builder(figures.build),
+          of_build(&BuildCost::cycles), shortest_text(figures.render_cycles), shortest_text(total_cycles),
+          of_build(&BuildCost::seconds), shortest_text(figures.render_seconds), shortest_text(figures.seconds()),
+          shortest_text(figures.fps())}) {
       table += field + ",";
     }
     table += hash_text(figures.hash) + "\n";

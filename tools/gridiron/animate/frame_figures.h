@@ -57,6 +57,10 @@ struct FrameFigures {
 [[nodiscard]] std::optional<BuildCost> cost_of_build(const SceneInput& input, const FrameMemory& memory,
                                                      const RenderPlan& plan);
 
+/// What the general core does behind the passes of a build, by its name and in cycles of the cores.
+inline constexpr const char* kMasterPass = "check_value";
+[[nodiscard]] double cycles_of_master(const CoresBuild& build, const sim::MachineProfile& machine);
+
 /// Adds the pass of the picture, which follows a build by the cores, to its figures and its start and barrier to the
 /// cost. @param picture  its trace on the machine.
 void add_picture(const sim::FrameTiming& picture, const sim::MachineProfile& machine, BuildCost& build);

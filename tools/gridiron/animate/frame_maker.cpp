@@ -3,6 +3,7 @@
 
 #include <gridiron/sim/replay.h>
 #include <report/report.h>
+#include <report/timeline.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -37,6 +38,19 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder)
   std::vector<std::filesystem::path>& files = meshes.empty() ? scenes : meshes;
   std::ranges::sort(files);
   return std::move(files);
+}
+
+// Build and picture, one behind the other.
+std::string timeline_of(const CoresBuild& build, const RenderPlan& plan, const sim::FrameTiming& picture) {
+  const sim::MachineProfile& machine = *plan.scene.machine;
+  if (build.passes.empty()) return timeline_json(picture, machine);
+  sim::PassesTiming timing = sim::replay_passes(build.passes, machine, plan.cores, /*timeline=*/true);
+  sim::PassTiming& master = timing.passes.emplace_back();
+  master.name = kMasterPass;
+  master.run.frame_cycles = cycles_of_master(build, machine);
+  master.cycles = master.run.frame_cycles;
+  timing.passes.push_back(sim::timing_of_pass("picture", picture, machine));
+  return passes_timeline_json(timing.passes, machine);
 }
 
 }  // namespace
@@ -107,12 +121,13 @@ Camera camera_of(const ViewRequest& view, std::uint32_t width, std::uint32_t hei
 }
 
 MadeFrame render_frame(FrameMemory& memory, const RenderPlan& plan, std::uint64_t content,
-                       const std::optional<BuildCost>& build, const FrameProgress& progress) {
+                       const std::optional<BuildCost>& build, bool has_timeline, const FrameProgress& progress) {
   const auto of_tiles = [&progress](std::uint32_t done, std::uint32_t total) {
     progress(static_cast<double>(done) / total);
   };
   const sim::ChipResult result = render_on_chip(memory, plan, of_tiles);
-  const sim::FrameTiming timing = sim::replay(result.trace, *plan.scene.machine, {.core_count = plan.cores});
+  const sim::FrameTiming timing =
+      sim::replay(result.trace, *plan.scene.machine, {.core_count = plan.cores, .timeline = has_timeline});
   MadeFrame made;
   made.source = {content, hash_of_view(memory.settings.camera, plan.width, plan.height)};
   made.figures.triangles = memory.image.header.triangle_count;
@@ -124,6 +139,7 @@ MadeFrame render_frame(FrameMemory& memory, const RenderPlan& plan, std::uint64_
   const Picture<std::uint32_t> color = words_of_plane(memory.record, memory.color.bytes);
   made.figures.hash = image_hash(color.pixels);
   made.png = encode_png(color);
+  if (has_timeline) made.timeline = timeline_of(memory.cores_build, plan, timing);
   if (!plan.scene.quiet) made.note = unseen_note(memory, result, plan.mode);
   return made;
 }

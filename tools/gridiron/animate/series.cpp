@@ -50,7 +50,7 @@ class Series final : public FrameMaker {
 
   void prepare() override;
   [[nodiscard]] FrameSource source_of(std::size_t i) override;
-  [[nodiscard]] MadeFrame make(std::size_t i, const FrameProgress& progress) override;
+  [[nodiscard]] MadeFrame make(std::size_t i, bool has_timeline, const FrameProgress& progress) override;
 
  private:
   static void require_kind(const std::filesystem::path& input, bool is_packed) {
@@ -157,7 +157,7 @@ FrameSource Series::source_of(std::size_t i) {
   return {frame.content, hash_of_view(camera_of(view_of(frame), size.x, size.y), size.x, size.y)};
 }
 
-MadeFrame Series::make(std::size_t i, const FrameProgress& progress) {
+MadeFrame Series::make(std::size_t i, bool has_timeline, const FrameProgress& progress) {
   SeriesFrame& frame = frames_[i];
   SceneInput input = read(frame);
   require_size(frame);
@@ -172,7 +172,7 @@ MadeFrame Series::make(std::size_t i, const FrameProgress& progress) {
   if (!animate_.keeps_vertex_order) memory.vertex_order = &vertex_order_;
   prepare_frame(memory, requested.input, requested.plan, requested.view);
   return render_frame(memory, requested.plan, frame.content, cost_of_build(requested.input, memory, requested.plan),
-                      progress);
+                      has_timeline, progress);
 }
 
 }  // namespace

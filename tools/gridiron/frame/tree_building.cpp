@@ -57,7 +57,7 @@ void place_mesh(const Mesh& mesh, std::optional<VertexOrder>* order, BuildMemory
   if (order != nullptr) {
     if (!*order || !(*order)->is_of(mesh)) order->emplace(mesh);
     (*order)->place(mesh, reinterpret_cast<Vec3*>(vertices.bytes.data()),
-                 reinterpret_cast<UVec3*>(triangles.bytes.data()));
+                    reinterpret_cast<UVec3*>(triangles.bytes.data()));
     return;
   }
   std::ranges::copy(std::as_bytes(std::span(mesh.vertices)), vertices.bytes.begin());
@@ -152,8 +152,8 @@ bool cores_can_build(const RenderPlan& plan) {
 }
 
 SceneImageView build_on_cores(sim::SimMemory& memory, const SceneInput& input, const Mesh& mesh, const RenderPlan& plan,
-                              const GridChoice& choice, const sim::MemoryRegion& image, std::optional<VertexOrder>* order,
-                              const EffectsView* effects, CoresBuild& build) {
+                              const GridChoice& choice, const sim::MemoryRegion& image,
+                              std::optional<VertexOrder>* order, const EffectsView* effects, CoresBuild& build) {
   BuildInput build_input;
   build_input.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
   build_input.triangle_count = static_cast<std::uint32_t>(mesh.triangles.size());
@@ -185,8 +185,9 @@ SceneImageView build_on_cores(sim::SimMemory& memory, const SceneInput& input, c
   SceneImageError error;
   if (open_scene_image(image.bytes, view, error) != Status::kOk ||
       (check_value && view.header.check_value != *check_value)) {
-    throw Failure(ExitCode::kCheckFailed, input.path.string() + ": the image that the cores built is not valid: field " +
-                                              error.field + " at byte " + std::to_string(error.byte_offset));
+    throw Failure(ExitCode::kCheckFailed, input.path.string() +
+                                              ": the image that the cores built is not valid: field " + error.field +
+                                              " at byte " + std::to_string(error.byte_offset));
   }
   return view;
 }
