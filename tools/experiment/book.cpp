@@ -3,10 +3,11 @@
 
 #include <utility>
 
-#include "experiment/svg_plot.h"
 #include "files/atomic_file.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 constexpr std::string_view kStyle = R"(

@@ -6,9 +6,10 @@
 #include "experiment/bvh_system.h"
 #include "experiment/paper_values.h"
 #include "experiment/sections.h"
-#include "experiment/svg_plot.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 /// The four that Fig. 7 compares with and without their builds.

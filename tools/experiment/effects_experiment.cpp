@@ -11,14 +11,15 @@
 #include "experiment/effect_scenes.h"
 #include "experiment/effect_sizes.h"
 #include "experiment/experiments.h"
-#include "experiment/svg_plot.h"
 #include "experiment/table.h"
 #include "experiment/workers.h"
 #include "files/image_files.h"
 #include "gridiron/device/store_facts.h"
 #include "gridiron/scene/effect_names.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 constexpr float kLambda = 4;

@@ -4,9 +4,10 @@
 
 #include "experiment/paper_values.h"
 #include "experiment/sections.h"
-#include "experiment/svg_plot.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 // One quantity of Table 1: its name, and the paper's statement.

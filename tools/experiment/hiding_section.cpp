@@ -7,9 +7,10 @@
 
 #include "experiment/paper_values.h"
 #include "experiment/sections.h"
-#include "experiment/svg_plot.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 constexpr std::uint32_t kPaperCoreCounts[] = {1, kPaperCores};

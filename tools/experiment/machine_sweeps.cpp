@@ -5,9 +5,10 @@
 #include <utility>
 
 #include "experiment/sections.h"
-#include "experiment/svg_plot.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 constexpr double kLatencies[] = {100, 200, 300, 400, 500, 750, 1000, 1500, 2000};

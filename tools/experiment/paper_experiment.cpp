@@ -5,10 +5,11 @@
 #include "experiment/experiments.h"
 #include "experiment/plan.h"
 #include "experiment/sections.h"
-#include "experiment/svg_plot.h"
 #include "files/interrupt.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 Stage make_stage(const ExperimentSettings& settings) {

@@ -7,10 +7,11 @@
 #include <utility>
 
 #include "experiment/price_words.h"
-#include "experiment/svg_plot.h"
 #include "files/interrupt.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 constexpr double kMegabyte = 1 << 20;

@@ -8,10 +8,11 @@
 
 #include "base/words.h"
 #include "experiment/sections.h"
-#include "experiment/svg_plot.h"
 #include "experiment/table.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 constexpr std::string_view kUsual = "standard";

@@ -1,9 +1,10 @@
 // Table 3 and Fig. 5: frames a second. SPDX-License-Identifier: Apache-2.0
 #include "experiment/paper_values.h"
 #include "experiment/sections.h"
-#include "experiment/svg_plot.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 std::string shading_name(Shading shading) {

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "report/svg_plot.h"
+
 namespace gridiron::experiment {
 
-struct Point2 {
-  double x = 0, y = 0;
-};
+using plot::Point2;
 
 /// y = factor * x^exponent.
 struct PowerFit {

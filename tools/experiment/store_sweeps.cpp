@@ -8,10 +8,11 @@
 #include <optional>
 
 #include "experiment/sections.h"
-#include "experiment/svg_plot.h"
 #include "gridiron/device/store_facts.h"
+#include "report/svg_plot.h"
 
 namespace gridiron::experiment {
+using namespace plot;
 namespace {
 
 const char* const kSweptConfigurations[] = {"reference", "grid", "best"};

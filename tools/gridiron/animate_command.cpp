@@ -29,10 +29,12 @@ namespace gridiron::tool {
 namespace {
 
 constexpr const char* kTableName = "animation.csv";
+constexpr const char* kPassesName = "animation_passes.csv";
+constexpr const char* kPlotName = "animation.svg";
 constexpr const char* kLogName = "animation.log";
 
 std::vector<std::string> names_of(const FrameMaker& maker) {
-  std::vector<std::string> names = {kTableName, kLogName};
+  std::vector<std::string> names = {kTableName, kPassesName, kPlotName, kLogName};
   for (std::size_t i = 0; i < maker.count(); ++i) names.push_back(maker.picture_of(i));
   return names;
 }
@@ -115,7 +117,8 @@ void Animation::render() {
   for (std::size_t i = 0; i < figures_.size(); ++i) {
     if (figures_[i]) continue;
     progress.wipe();  // notes may come
-    const MadeFrame made = maker_->make(i, [&](double share) { progress.update(done, missing, share); });
+    const MadeFrame made =
+        maker_->make(i, request_.timeline && i == 0, [&](double share) { progress.update(done, missing, share); });
     progress.wipe();
     write_frame(i, made);
     tell_note(maker_->input_of(i), made.note);
@@ -128,6 +131,7 @@ void Animation::write_frame(std::size_t i, const MadeFrame& made) {
   log_.begin();
   AtomicFiles file;
   file.add(picture_path(i), made.png);
+  if (!made.timeline.empty()) file.add(*request_.timeline, made.timeline);
   file.commit();
   log_.add(i, {.line = 0, .source = made.source, .picture = content_hash(made.png), .figures = made.figures});
   figures_[i] = made.figures;
@@ -143,7 +147,10 @@ std::vector<NamedFrame> Animation::named_frames() const {
 
 void Animation::write_table(bool is_last) const {
   AtomicFiles table;
-  table.add(request_.output / kTableName, table_of(named_frames(), *request_.render.scene.machine));
+  const std::vector<NamedFrame> frames = named_frames();
+  table.add(request_.output / kTableName, table_of(frames, *request_.render.scene.machine));
+  if (const std::string passes = passes_of(frames); !passes.empty()) table.add(request_.output / kPassesName, passes);
+  table.add(request_.output / kPlotName, plot_of(frames));
   if (is_last) {
     table.commit_at_end();
   } else {
@@ -179,7 +186,10 @@ void run_command(const AnimateRequest& request) {
   if (request.film) require_ffmpeg(*request.film);
   Animation animation(request);
   OutputFolder folder(request.output, names_of(animation.maker()));
-  if (request.film) declare_outputs({{"--film", *request.film, OutputKind::kFilm}});
+  std::vector<Output> outputs;
+  if (request.film) outputs.push_back({"--film", *request.film, OutputKind::kFilm});
+  if (request.timeline) outputs.push_back({"--timeline", *request.timeline, OutputKind::kText});
+  declare_outputs(outputs);
   {
     const StageLines stages(!request.render.scene.quiet);
     animation.maker().prepare();

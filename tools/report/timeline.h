@@ -3,9 +3,11 @@
 #pragma once
 
 #include <gridiron/sim/machine_profile.h>
+#include <gridiron/sim/pass_timing.h>
 #include <gridiron/sim/replay.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 
 namespace gridiron::tool {
@@ -25,5 +27,14 @@ inline constexpr std::size_t kMaxTimelineBytes = 50'000'000;  ///< beyond it tra
 /// @returns       JSON text. Format: the Trace Event Format's JSON object form.
 [[nodiscard]] std::string timeline_json(const sim::FrameTiming& timing, const sim::MachineProfile& machine,
                                         std::size_t max_bytes = kMaxTimelineBytes);
+
+/// The same of a list of passes, each behind the one before it. What a core has in its hands is named "item"; in a pass
+/// that an engine of core renders, "tile". A row "passes" has each pass under its name, and in it "start" and
+/// "barrier".
+///
+/// @param passes  with timelines; one without cores is what the general core does between two.
+[[nodiscard]] std::string passes_timeline_json(std::span<const sim::PassTiming> passes,
+                                               const sim::MachineProfile& machine,
+                                               std::size_t max_bytes = kMaxTimelineBytes);
 
 }  // namespace gridiron::tool

@@ -8,6 +8,9 @@
 #include <gridiron/build/passes/build_work.h>
 #include <gridiron/sim/engine_work.h>
 
+#include <iterator>
+#include <string_view>
+
 namespace gridiron::sim {
 
 /// Numbers of descriptions that are no engine's; above those of engines.
@@ -69,6 +72,14 @@ inline constexpr EngineWork kCheckPassWork =
                                        .kinds = kCheckPassKinds,
                                        .prices = kCheckPassPrices,
                                        .wait_levels = {"output", "window", "record", "setup"}});
+
+/// @returns the stable snake_case name of a pass.
+[[nodiscard]] constexpr std::string_view name_of(BuildPass pass) {
+  constexpr std::string_view kNames[] = {"bounds", "codes",    "buckets", "cuts",    "sort",
+                                         "top",    "subtrees", "join",    "numbers", "check"};
+  static_assert(std::size(kNames) == kBuildPassCount);
+  return kNames[static_cast<std::uint32_t>(pass)];
+}
 
 /// @returns the kinds of work of a pass.
 [[nodiscard]] constexpr const EngineWork& work_of(BuildPass pass) {

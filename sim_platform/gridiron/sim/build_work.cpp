@@ -1,4 +1,5 @@
 // Build work: see the header. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/passes/build_plan.h>
 #include <gridiron/sim/build_work.h>
 
 #include <iterator>
@@ -65,6 +66,14 @@ BuildWork grid_build_work(std::uint64_t vertex_count, std::uint64_t triangle_cou
   work.add(BuildStep::kClearedLine, need.image_bytes / kLineBytes - triangle_lines);
   work.add(BuildStep::kCheckedLine, triangle_lines);
   work.add(BuildStep::kFarLine, far_lines(triangle_count, need, sweeps + (lattice ? 3 : 1), lines));
+  return work;
+}
+
+BuildWork image_check_work(std::uint64_t piece_count) {
+  const std::uint64_t lines = (piece_count * sizeof(PieceCheck) + kLineBytes - 1) / kLineBytes;
+  BuildWork work;
+  work.add(BuildStep::kCheckedLine, lines);
+  work.add(BuildStep::kFarLine, lines + 1);  // and the image's header
   return work;
 }
 

@@ -34,6 +34,10 @@ struct BuildWork {
 [[nodiscard]] BuildWork grid_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count, const GridNeed& need,
                                         const MeshLines& lines);
 
+/// What the general core does for an image that the cores have built: it reads the check values of the pieces and
+/// writes the image's.
+[[nodiscard]] BuildWork image_check_work(std::uint64_t piece_count);
+
 /// @returns the stable snake_case name of a step.
 [[nodiscard]] std::string_view name_of(BuildStep step);
 

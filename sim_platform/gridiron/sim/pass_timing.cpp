@@ -39,7 +39,8 @@ std::string_view name_of(PassLimit limit) {
   return kNames[static_cast<std::size_t>(limit)];
 }
 
-PassesTiming replay_passes(std::span<const PassRun> passes, const MachineProfile& machine, std::uint32_t core_count) {
+PassesTiming replay_passes(std::span<const PassRun> passes, const MachineProfile& machine, std::uint32_t core_count,
+                           bool timeline) {
   PassesTiming all;
   const std::uint32_t cores = std::max(1u, core_count != 0 ? core_count : machine.core_count);
   for (std::size_t i = 0; i < passes.size(); ++i) {
@@ -51,7 +52,7 @@ PassesTiming replay_passes(std::span<const PassRun> passes, const MachineProfile
     if (pass.items != 0) {
       MachineProfile of_pass = machine;
       of_pass.latency_seed += static_cast<std::uint32_t>(i);
-      pass.run = replay(passes[i].result.trace, of_pass, {.core_count = cores});
+      pass.run = replay(passes[i].result.trace, of_pass, {.core_count = cores, .timeline = timeline});
       pass.barrier_cycles = rounded_cycles(machine.pass_barrier_cycles);
     } else {
       pass.run.engine = passes[i].result.trace.engine;
@@ -64,6 +65,18 @@ PassesTiming replay_passes(std::span<const PassRun> passes, const MachineProfile
   }
   all.seconds = machine.clock_hz > 0 ? all.cycles / machine.clock_hz : 0;
   return all;
+}
+
+PassTiming timing_of_pass(std::string_view name, const FrameTiming& run, const MachineProfile& machine) {
+  PassTiming pass;
+  pass.name = name;
+  for (const CoreTiming& core : run.cores) pass.items += core.tiles;
+  pass.start_cycles = rounded_cycles(machine.pass_start_cycles);
+  pass.run = run;
+  pass.barrier_cycles = rounded_cycles(machine.pass_barrier_cycles);
+  pass.cycles = pass.start_cycles + run.frame_cycles + pass.barrier_cycles;
+  find_limits(pass);
+  return pass;
 }
 
 }  // namespace gridiron::sim

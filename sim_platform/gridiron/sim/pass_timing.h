@@ -61,7 +61,12 @@ struct PassesTiming {
 /// the passes ran on, as replay().
 ///
 /// Rendering as the last pass: append {"render", tiles, render_frame(...)} to the runs.
+///
+/// @param timeline  whether to fill the runs' timelines.
 [[nodiscard]] PassesTiming replay_passes(std::span<const PassRun> passes, const MachineProfile& machine,
-                                         std::uint32_t core_count = 0);
+                                         std::uint32_t core_count = 0, bool timeline = false);
+
+/// @returns the time of one pass that was replayed by itself, as the first of a list. @param name  outlives it.
+[[nodiscard]] PassTiming timing_of_pass(std::string_view name, const FrameTiming& run, const MachineProfile& machine);
 
 }  // namespace gridiron::sim

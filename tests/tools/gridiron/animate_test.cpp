@@ -88,12 +88,12 @@ TEST(Animate, FramesAreThoseOfRender) {
 }
 
 // Nothing of the tree's build is counted, so nothing is said of it, and the sums are those of the frames alone.
-TEST(Animate, BuildsThroughTheTreeAreNotCounted) {
+TEST(Animate, BuildsOfTreesByTheMasterAreNotCounted) {
   const TemporaryFolder folder("a.ply", make_sphere(10, 14, 1.0f));
-  const Words frames = {"a.ply", "-o", "out", "--size", "48x32"};
+  const Words frames = {"a.ply", "-o", "out", "--size", "48x32", "--build", "master"};
   const ProgramResult result = animate(folder, frames);
   EXPECT_NE(result.out.find("  not counted"), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find(" frames/s without their builds; --configuration grid counts these too\n"),
+  EXPECT_NE(result.out.find(" frames/s without their builds; --build cores counts those of trees\n"),
             std::string::npos)
       << result.out;
   const Row row = read_table(folder.path("out/animation.csv")).at(0);
@@ -104,6 +104,166 @@ TEST(Animate, BuildsThroughTheTreeAreNotCounted) {
   EXPECT_DOUBLE_EQ(std::stod(row.at("fps")), 1 / std::stod(row.at("render_seconds")));
   (void)animate(folder, with_reference(frames));
   EXPECT_EQ(read_table(folder.path("out/animation.csv")).at(0).at("hash"), row.at("hash"));
+}
+
+double number(const Row& row, const char* column) {
+  return std::stod(row.at(column));
+}
+
+// The picture of a tree that the cores have built is that of prepare's, and takes as long; before it come the passes.
+TEST(Animate, CoresBuildTheTreeOfEachFrame) {
+  const TemporaryFolder folder;
+  const TestMesh first = make_torus(70, 60, 1.0f, 0.4f);
+  folder.write_ply("a.ply", first);
+  folder.write_ply("b.ply", moved(first, 1.0f, Vec3(0.5f, 0, 0)));
+  folder.write_ply("c.ply", make_sphere(30, 40, 1.0f));
+  const Words frames = {"a.ply", "b.ply", "c.ply", "-o", "out", "--size", "64x48", "--cores", "3"};
+  (void)animate(folder, frames + Words{"--build", "master"});
+  const std::vector<Row> of_master = read_table(folder.path("out/animation.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path("out/animation_passes.csv")));
+  (void)animate(folder, frames + Words{"--keep-vertex-order"});
+  const std::vector<Row> in_order = read_table(folder.path("out/animation.csv"));
+  const ProgramResult result = animate(folder, frames + Words{"--build", "cores"});
+  EXPECT_NE(result.out.find(" frames/s with their builds by the cores\n"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("\nsubtrees "), std::string::npos) << result.out;
+  const std::vector<Row> rows = read_table(folder.path("out/animation.csv"));
+  const std::vector<Row> passes = read_table(folder.path("out/animation_passes.csv"));
+  ASSERT_EQ(rows.size(), 3u);
+  ASSERT_EQ(passes.size(), 3u * 12);
+  const std::string names[] = {"bounds", "codes", "buckets", "cuts", "sort", "top", "subtrees", "join", "numbers", "check",
+                               "check_value", "picture"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Row& row = rows[i];
+    EXPECT_EQ(row.at("hash"), of_master[i].at("hash"));
+    EXPECT_EQ(row.at("render_cycles"), of_master[i].at("render_cycles"));
+    EXPECT_EQ(row.at("builder"), "cores");
+    EXPECT_EQ(of_master[i].at("builder"), "");
+    EXPECT_EQ(row.at("hash"), in_order[i].at("hash"));
+    double cycles = 0;
+    for (std::size_t k = 0; k < 12; ++k) {
+      const Row& pass = passes[12 * i + k];
+      EXPECT_EQ(pass.at("frame"), std::to_string(i));
+      EXPECT_EQ(pass.at("pass"), names[k]);
+      EXPECT_NEAR(number(pass, "begin_cycles"), cycles, 0.01) << names[k];
+      EXPECT_NEAR(number(pass, "cycles"),
+                  number(pass, "start_cycles") + number(pass, "run_cycles") + number(pass, "barrier_cycles"), 0.01);
+      const bool is_of_master = names[k] == "check_value";
+      EXPECT_EQ(pass.at("binding") == "general_core", is_of_master);
+      EXPECT_EQ(number(pass, "start_cycles"), is_of_master ? 0 : 500);
+      EXPECT_GT(number(pass, "run_cycles"), 0);
+      const bool is_alone = is_of_master || pass.at("items") == "1";
+      EXPECT_EQ(number(pass, "one_core_cycles"), is_alone ? number(pass, "cycles") : 0) << names[k];
+      cycles += number(pass, "cycles");
+    }
+    EXPECT_EQ(passes[12 * i + 7].at("items"), "1");
+    EXPECT_NEAR(number(row, "total_cycles"), cycles, 0.01) << "nothing overlaps";
+    EXPECT_NEAR(number(row, "build_cycles") + number(row, "render_cycles"), cycles, 0.01);
+    EXPECT_NEAR(number(row, "fps") * cycles, 3.2e9, 1);
+  }
+  EXPECT_NE(rows[0].at("hash"), rows[1].at("hash"));
+}
+
+// Vertices in any order cost the same once they are in theirs; b.ply has the triangles of a.ply.
+TEST(Animate, PutsVerticesInOrderOnce) {
+  TestMesh mesh = make_torus(90, 80, 1.0f, 0.4f);
+  TestMesh mixed = mesh;
+  const std::size_t count = mesh.vertices.size();
+  for (std::size_t i = 0; i < count; ++i) mixed.vertices[i * 3847 % count] = mesh.vertices[i];
+  for (UVec3& triangle : mixed.triangles) {
+    for (int corner = 0; corner < 3; ++corner) triangle[corner] = static_cast<std::uint32_t>(triangle[corner] * 3847ull % count);
+  }
+  ASSERT_NE(count % 3847, 0u);
+  const TemporaryFolder folder("good.ply", mesh);
+  folder.write_ply("mixed.ply", mixed);
+  const auto rows_of = [&folder](const Words& more) {
+    (void)animate(folder, Words{"good.ply", "mixed.ply", "-o", "out", "--size", "48x32"} + more);
+    return read_table(folder.path("out/animation.csv"));
+  };
+  const std::vector<Row> kept = rows_of({"--keep-vertex-order"}), put = rows_of({});
+  EXPECT_GT(number(kept[1], "build_cycles"), 1.1 * number(kept[0], "build_cycles"));
+  EXPECT_LT(number(put[1], "build_cycles"), 1.03 * number(kept[0], "build_cycles"));
+  EXPECT_LE(number(put[0], "build_cycles"), number(kept[0], "build_cycles"));
+  for (const auto& rows : {kept, put}) EXPECT_EQ(rows[1].at("hash"), kept[0].at("hash"));
+}
+
+// Surfaces and lights come from prepare, the tree between them from the cores.
+TEST(Animate, CoresBuildTheTreeOfEffects) {
+  const TemporaryFolder folder;
+  folder.write("a.nff",
+               "v from 1 2 6 at 0 0 0 up 0 1 0 angle 30 hither 0 resolution 40 24\nl 3 5 4\nf 0.9 0.5 0.3 0.7 0.3 40 0 "
+               "0\ns 0 0 0 1\n");
+  (void)animate(folder, {"a.nff", "-o", "out", "--build", "master"});
+  const Row one = read_table(folder.path("out/animation.csv")).at(0);
+  (void)animate(folder, {"a.nff", "-o", "out"});
+  const Row row = read_table(folder.path("out/animation.csv")).at(0);
+  EXPECT_EQ(row.at("hash"), one.at("hash"));
+  EXPECT_EQ(row.at("render_cycles"), one.at("render_cycles"));
+  EXPECT_EQ(one.at("build_cycles"), "");
+  EXPECT_GT(number(row, "build_cycles"), 0);
+}
+
+TEST(Animate, TellsWhatTheCoresCannotBuild) {
+  const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
+  const Words common = {"animate", "a.ply", "-o", "out", "--size", "16x16", "--build", "cores"};
+  expect_failure(folder, with_reference(common), 2,
+                 "--build cores: builds trees; configuration reference reads a grid, which the general core builds");
+  expect_failure(folder, common + Words{"--accuracy", "compact"}, 2,
+                 "--build cores: builds trees of vertices as they are, not of --accuracy compact");
+  folder.write("small.machine", "based_on cell-ps3\nname small\nmain_memory_bytes 3145728\n");
+  folder.write_ply("b.ply", make_torus(90, 80, 1.0f, 0.4f));
+  const Words small = {"animate", "b.ply", "-o", "out", "--size", "16x16", "--machine", "small.machine"};
+  expect_failure(folder, small, 1, "; --build master needs none");
+  (void)animate(folder, {"a.ply", "-o", "out", "--size", "16x16", "--accuracy", "compact"});
+  EXPECT_EQ(read_table(folder.path("out/animation.csv")).at(0).at("builder"), "");
+}
+
+// The same frame at 64 KB: another layout, the same tree but for the size of its leaves.
+TEST(Animate, SmallCoresBuildToo) {
+  const TemporaryFolder folder("a.ply", make_torus(40, 30, 1.0f, 0.4f));
+  const Words small = {"a.ply", "-o", "out", "--size", "48x32", "--store", "64"};
+  (void)animate(folder, small + Words{"--build", "master"});
+  const Row one = read_table(folder.path("out/animation.csv")).at(0);
+  (void)animate(folder, small);
+  const Row row = read_table(folder.path("out/animation.csv")).at(0);
+  EXPECT_EQ(row.at("hash"), one.at("hash"));
+  EXPECT_EQ(row.at("render_cycles"), one.at("render_cycles"));
+  EXPECT_EQ(row.at("builder"), "cores");
+}
+
+TEST(Animate, TimelineHasPassesAndPicture) {
+  const TemporaryFolder folder("a.ply", make_sphere(30, 40, 1.0f));
+  folder.write_ply("b.ply", make_sphere(8, 12, 1.0f));
+  const Words frames = {"a.ply", "b.ply", "-o", "out", "--size", "64x64"};
+  (void)animate(folder, frames + Words{"--timeline", "t.json"});
+  const Row row = read_table(folder.path("out/animation.csv")).at(0);
+  const Json trace = Json::parse(read_file(folder.path("t.json")), nullptr, false);
+  double end = 0, items = 0, tiles = 0;
+  for (const Json& event : trace["traceEvents"]) {
+    if (event["ph"] != "X") continue;
+    end = std::max(end, event["ts"].get<double>() + event["dur"].get<double>());
+    items += event["name"] == "item" ? 1 : 0;
+    tiles += event["name"] == "tile" ? 1 : 0;
+  }
+  EXPECT_NEAR(end, number(row, "total_cycles") / 3200, 0.001) << "microseconds of the whole frame";
+  EXPECT_GT(items, 9);
+  EXPECT_EQ(tiles, 1);
+  (void)animate(folder, {"a.ply", "-o", "out", "--size", "64x64", "--turntable", "2", "--timeline", "t.json"});
+  expect_failure(folder, Words{"animate"} + frames + Words{"--timeline", "t.json", "--resume"}, 2,
+                 "--timeline: is not made again by --resume");
+}
+
+TEST(Animate, PlotsTheTimeOfEachFrame) {
+  const TemporaryFolder folder("a.ply", make_sphere(10, 14, 1.0f));
+  folder.write_ply("b.ply", make_sphere(8, 12, 1.0f));
+  (void)animate(folder, {"a.ply", "b.ply", "-o", "out", "--size", "16x16"});
+  const std::string plot = read_file(folder.path("out/animation.svg"));
+  EXPECT_NE(plot.find("Time of each frame"), std::string::npos);
+  EXPECT_NE(plot.find(">build<"), std::string::npos) << plot;
+  EXPECT_NE(plot.find(">picture<"), std::string::npos);
+  (void)animate(folder, {"a.ply", "-o", "turn", "--size", "16x16", "--turntable", "30"});
+  const std::string turn = read_file(folder.path("turn/animation.svg"));
+  EXPECT_NE(turn.find("<polyline"), std::string::npos);
+  EXPECT_EQ(turn.find(">build<"), std::string::npos) << "nothing is built for a frame";
 }
 
 constexpr const char* kSphere = "l 3 5 4\nf 0.9 0.5 0.3 0.7 0.3 40 0 0\ns 0 0 0 1\n";
@@ -129,7 +289,6 @@ TEST(Animate, TextScenesHaveTheirOwnViews) {
   EXPECT_EQ(rows[0].at("hash"), hash_of_render(folder, {"in/a.nff"}));
   EXPECT_EQ(rows[1].at("hash"), hash_of_render(folder, {"in/b.nff"}));
   EXPECT_NE(rows[0].at("hash"), rows[1].at("hash"));
-  EXPECT_EQ(rows[0].at("build_cycles"), "");
   (void)animate(folder, {"in", "-o", "out", "--eye", "0,3,5", "--tolerance", "0.1"});
   const Row seen = read_table(folder.path("out/animation.csv")).at(0);
   EXPECT_EQ(seen.at("hash"), hash_of_render(folder, {"in/a.nff", "--eye", "0,3,5", "--tolerance", "0.1"}));

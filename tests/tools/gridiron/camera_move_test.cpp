@@ -48,10 +48,12 @@ TEST(CameraMove, ATurntableGoesAroundAMesh) {
   const Words turn = Words{"animate", "a.ply", "-o", "out", "--turntable", "3", "--up", "z"} + kSize;
   const Words render = Words{"render", "a.ply"} + kSize;
   ProgramResult result = run(folder, turn);
-  EXPECT_NE(result.out.find("; the camera alone moves: the tree is built once and nothing per frame\n"),
+  EXPECT_NE(result.out.find(" cycles of the cores, and nothing per frame\n"),
             std::string::npos)
       << result.out;
   expect_renders(folder, "out/animation.csv", render, views);
+  EXPECT_NE(run(folder, turn + Words{"--build", "master"}).out.find("the tree is built once and nothing per frame\n"),
+            std::string::npos);
 
   result = run(folder, with_reference(turn));
   EXPECT_NE(result.out.find("the grid is built once, in "), std::string::npos) << result.out;

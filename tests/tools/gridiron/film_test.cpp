@@ -75,7 +75,7 @@ TEST_F(Film, AFailureKeepsPicturesTableAndTheEarlierFilm) {
     write_ffmpeg(script);
     const ProgramResult result = animate("--film a.webm");
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_EQ(result.err, words + std::string("4 files were written before that and are kept\n"));
+    EXPECT_EQ(result.err, words + std::string("5 files were written before that and are kept\n"));
     EXPECT_EQ(read_file(folder_.path("a.webm")), "earlier");
     EXPECT_TRUE(fs::exists(folder_.path("out/animation.csv")));
     EXPECT_EQ(folder_.names(), (Words{"a.ply", "a.webm", "bin", "out"}));
@@ -98,13 +98,13 @@ TEST_F(Film, AnInterruptEndsFfmpegToo) {
     const ProgramResult result = program.wait(std::chrono::seconds(30));
     if (signal == SIGINT) {
       EXPECT_EQ(result.exit_code, 130);
-      EXPECT_EQ(result.err, "interrupted; 2 files were written before that and are kept\n");
+      EXPECT_EQ(result.err, "interrupted; 5 files were written before that and are kept\n");
       std::vector<std::string> names;
       for (const auto& entry : fs::directory_iterator(folder_.path("out"))) {
         names.push_back(entry.path().filename().string());
       }
       std::ranges::sort(names);
-      EXPECT_EQ(names, (Words{"a.png", "animation.csv", "animation.log"}));
+      EXPECT_EQ(names, (Words{"a.png", "animation.csv", "animation.log", "animation.svg", "animation_passes.csv"}));
     }
     const int process = std::stoi(read_file(folder_.path("process")));
     const auto lives = [process] {  // it may be somebody's to wait for, as a zombie

@@ -37,7 +37,7 @@ class Resume : public ::testing::Test {
   Resume() {
     (void)run(folder_, kTurn);
     whole_ = files_of(folder_.path("out"));
-    EXPECT_EQ(whole_.size(), 6u);
+    EXPECT_EQ(whole_.size(), 7u);
   }
 
   void expect_resumed(const Words& command, const std::string& kept) {

@@ -2,6 +2,8 @@
 // Memory: std::string. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include "report/timeline.h"
 
+#include <gridiron/sim/build_pass_work.h>
+
 #include <nlohmann/json.hpp>
 
 #include "support/test_headers.h"
@@ -163,6 +165,52 @@ TEST(Timeline, HopelessLimitEnds) {
 
 TEST(Timeline, EmptyFrameIsValid) {
   EXPECT_TRUE(json::parse(timeline_json({}, machine())).is_object());
+}
+
+// Each pass begins where the one before it ends; on cores behind its start.
+TEST(Timeline, PassesFollowOneAnother) {
+  sim::PassTiming build, master, picture;
+  build.name = "bounds";
+  build.items = 9;
+  build.start_cycles = 100;
+  build.run = sample(0);
+  build.run.engine = &sim::kBuildPassesWork;
+  build.barrier_cycles = 60;
+  build.cycles = 1160;
+  master.name = "check_value";
+  master.cycles = master.run.frame_cycles = 40;
+  picture = build;
+  picture.name = "picture";
+  picture.run.engine = &sim::kTreeEngine;
+  const std::array passes = {build, master, picture};
+  const json trace = json::parse(passes_timeline_json(passes, machine()));
+  const std::vector<json> events = complete_events(trace);
+  const auto named = [&events](const char* name, unsigned row) {
+    std::vector<json> found;
+    for (const json& event : events) {
+      if (event["name"] == name && event["tid"] == row) found.push_back(event);
+    }
+    return found;
+  };
+  const std::vector<json> item = named("item", 0), tile = named("tile", 0);
+  ASSERT_EQ(item.size(), 1u);
+  ASSERT_EQ(tile.size(), 1u);
+  EXPECT_EQ(item[0]["args"], (json{{"item", 7}}));
+  EXPECT_EQ(tile[0]["args"], (json{{"tile", 7}}));
+  EXPECT_EQ(item[0]["ts"], 0.25) << "at 100 + 400 cycles";
+  EXPECT_EQ(tile[0]["ts"], 0.85) << "1200 later";
+  EXPECT_EQ(named("wait window", 0).size(), 0u);
+  EXPECT_EQ(named("wait record", 0).size(), 1u) << "levels have the names of their pass";
+  EXPECT_EQ(named("wait leaf", 0).size(), 1u);
+  ASSERT_EQ(named("bounds", 2).size(), 1u);
+  EXPECT_EQ(named("bounds", 2)[0]["args"], (json{{"items", 9}}));
+  EXPECT_EQ(named("bounds", 2)[0]["dur"], 0.58);
+  EXPECT_EQ(named("check_value", 2)[0]["ts"], 0.58);
+  EXPECT_EQ(named("picture", 2)[0]["ts"], 0.6);
+  ASSERT_EQ(named("start", 2).size(), 2u);
+  ASSERT_EQ(named("barrier", 2).size(), 2u);
+  EXPECT_EQ(named("barrier", 2)[1]["ts"], 1.15);
+  EXPECT_EQ(named("barrier", 2)[1]["dur"], 0.03);
 }
 
 }  // namespace

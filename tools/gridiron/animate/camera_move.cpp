@@ -29,7 +29,7 @@ class CameraMove final : public FrameMaker {
   CameraMove(const AnimateRequest& request, const std::filesystem::path& input) : animate_(request) {
     request_ = request.render;
     request_.scene.input = input;
-    check_foreseen(request_, input);
+    check_foreseen(request, input);
     if (request.path) path_ = read_camera_path(*request.path);
   }
 
@@ -41,7 +41,7 @@ class CameraMove final : public FrameMaker {
   [[nodiscard]] FrameSource source_of(std::size_t i) override {
     return {content_, hash_of_view(camera(i), frame_.plan.width, frame_.plan.height)};
   }
-  [[nodiscard]] MadeFrame make(std::size_t i, const FrameProgress& progress) override;
+  [[nodiscard]] MadeFrame make(std::size_t i, bool has_timeline, const FrameProgress& progress) override;
   [[nodiscard]] std::optional<SingleBuild> single_build() const override { return build_; }
 
  private:
@@ -80,6 +80,7 @@ void CameraMove::prepare() {
   take_grid_without_bounds(request_, frame_, views_);
   tell_frame_notes(request_, frame_);
   const bool is_packed = std::holds_alternative<PackedScene>(frame_.input.content);
+  if (!is_packed) choose_builder(animate_, frame_.plan);
   if (!is_packed) build_.structure = frame_.plan.engine == EngineId::kTree ? "tree" : "grid";
 }
 
@@ -92,15 +93,17 @@ void CameraMove::build() {
   if (std::holds_alternative<PackedScene>(frame_.input.content)) {
     prepare_frame(*memory_, std::move(frame_.input), frame_.plan, views_[view]);
   } else {
+    std::optional<VertexOrder> order;
+    if (!animate_.keeps_vertex_order) memory_->vertex_order = &order;
     prepare_frame(*memory_, frame_.input, frame_.plan, views_[view]);
     build_.cost = cost_of_build(frame_.input, *memory_, frame_.plan);
   }
 }
 
-MadeFrame CameraMove::make(std::size_t i, const FrameProgress& progress) {
+MadeFrame CameraMove::make(std::size_t i, bool has_timeline, const FrameProgress& progress) {
   if (!memory_) build();
   aim_camera(*memory_, camera(i), request_.scene.input);
-  MadeFrame made = render_frame(*memory_, frame_.plan, content_, BuildCost{}, progress);
+  MadeFrame made = render_frame(*memory_, frame_.plan, content_, BuildCost{}, has_timeline, progress);
   if (made.note) made.note = "frame " + std::to_string(i) + ": " + *made.note;
   return made;
 }

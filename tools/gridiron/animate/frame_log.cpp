@@ -48,6 +48,16 @@ std::string line_of(std::size_t i, const LoggedFrame& frame) {
         shortest_text(figures.render_cycles), shortest_text(figures.render_seconds), shortest_text(figures.hash)}) {
     line += " " + word;
   }
+  if (!figures.build || figures.build->builder == Builder::kMaster) return line + "\n";
+  line += " " + shortest_text(figures.build->passes.size());
+  for (const PassFigures& pass : figures.build->passes) {
+    line += " " + pass.name + " " + shortest_text(pass.items);
+    for (const double cycles : {pass.start_cycles, pass.run_cycles, pass.barrier_cycles}) {
+      line += " " + shortest_text(cycles);
+    }
+    for (const double cycles : pass.limits) line += " " + shortest_text(cycles);
+    line += " " + shortest_text(pass.bytes_in) + " " + shortest_text(pass.bytes_out);
+  }
   return line + "\n";
 }
 
@@ -72,6 +82,13 @@ class Words {
     return std::nullopt;
   }
 
+  std::string take_name() {
+    const std::string_view word = take_word();
+    is_whole_ = is_whole_ && !word.empty();
+    return std::string(word);
+  }
+
+  [[nodiscard]] bool has_more() const { return is_whole_ && !rest_.empty(); }
   [[nodiscard]] bool are_whole() const { return is_whole_ && rest_.empty(); }
 
  private:
@@ -86,6 +103,22 @@ class Words {
   bool is_whole_ = true;
 };
 
+void take_passes(Words& words, BuildCost& build) {
+  build.builder = Builder::kCores;
+  const auto count = words.take<std::uint32_t>();
+  for (std::uint32_t i = 0; i < count && words.has_more(); ++i) {
+    PassFigures& pass = build.passes.emplace_back();
+    pass.name = words.take_name();
+    pass.items = words.take<std::uint32_t>();
+    for (double* const cycles : {&pass.start_cycles, &pass.run_cycles, &pass.barrier_cycles}) {
+      *cycles = words.take<double>();
+    }
+    for (double& cycles : pass.limits) cycles = words.take<double>();
+    pass.bytes_in = words.take<std::uint64_t>();
+    pass.bytes_out = words.take<std::uint64_t>();
+  }
+}
+
 std::optional<std::pair<std::size_t, LoggedFrame>> frame_of(std::string_view text, std::uint64_t line) {
   Words words(text);
   LoggedFrame frame{.line = line, .source = {}, .picture = 0, .figures = {}};
@@ -98,10 +131,11 @@ std::optional<std::pair<std::size_t, LoggedFrame>> frame_of(std::string_view tex
   figures.lambda = words.take_optional<float>();
   const auto build_cycles = words.take_optional<double>();
   const auto build_seconds = words.take_optional<double>();
-  if (build_cycles && build_seconds) figures.build = BuildCost{*build_cycles, *build_seconds};
+  if (build_cycles && build_seconds) figures.build = BuildCost{*build_cycles, *build_seconds, Builder::kMaster, {}};
   figures.render_cycles = words.take<double>();
   figures.render_seconds = words.take<double>();
   figures.hash = words.take<std::uint64_t>();
+  if (figures.build && words.has_more()) take_passes(words, *figures.build);
   return words.are_whole() ? std::optional(std::pair(i, frame)) : std::nullopt;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gridiron/sim/replay.h>
 #include <report/report.h>
+#include <report/timeline.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -39,6 +40,19 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder)
   return std::move(files);
 }
 
+// Build and picture, one behind the other.
+std::string timeline_of(const CoresBuild& build, const RenderPlan& plan, const sim::FrameTiming& picture) {
+  const sim::MachineProfile& machine = *plan.scene.machine;
+  if (build.passes.empty()) return timeline_json(picture, machine);
+  sim::PassesTiming timing = sim::replay_passes(build.passes, machine, plan.cores, /*timeline=*/true);
+  sim::PassTiming& master = timing.passes.emplace_back();
+  master.name = kMasterPass;
+  master.run.frame_cycles = cycles_of_master(build, machine);
+  master.cycles = master.run.frame_cycles;
+  timing.passes.push_back(sim::timing_of_pass("picture", picture, machine));
+  return passes_timeline_json(timing.passes, machine);
+}
+
 }  // namespace
 
 std::string numbered_picture(std::size_t i, std::size_t count) {
@@ -65,11 +79,25 @@ std::unique_ptr<FrameMaker> make_frame_maker(const AnimateRequest& request) {
   return make_camera_move(request, inputs.front());
 }
 
-void check_foreseen(const RenderRequest& request, const std::filesystem::path& input) {
-  RenderRequest frame = request;
+void check_foreseen(const AnimateRequest& request, const std::filesystem::path& input) {
+  RenderRequest frame = request.render;
   frame.scene.input = input;
   const KnownScene scene = foreseen_scene(frame.scene);
-  if (scene.kind != SceneKind::kUnknown) (void)resolve(frame, scene, this_host());
+  if (scene.kind == SceneKind::kUnknown) return;
+  RenderPlan plan = resolve(frame, scene, this_host());
+  if (scene.kind != SceneKind::kPacked) choose_builder(request, plan);
+}
+
+void choose_builder(const AnimateRequest& request, RenderPlan& plan) {
+  if (request.builder == Builder::kMaster) return;
+  if (cores_can_build(plan)) {
+    plan.builder = Builder::kCores;
+  } else if (request.builder == Builder::kCores) {
+    usage_error(plan.engine == EngineId::kTree
+                    ? "--build cores: builds trees of vertices as they are, not of --accuracy compact"
+                    : "--build cores: builds trees; configuration " + std::string(plan.scene.configuration->name) +
+                          " reads a grid, which the general core builds");
+  }
 }
 
 void require_renderable(const SceneInput& input) {
@@ -93,22 +121,25 @@ Camera camera_of(const ViewRequest& view, std::uint32_t width, std::uint32_t hei
 }
 
 MadeFrame render_frame(FrameMemory& memory, const RenderPlan& plan, std::uint64_t content,
-                       const std::optional<BuildCost>& build, const FrameProgress& progress) {
+                       const std::optional<BuildCost>& build, bool has_timeline, const FrameProgress& progress) {
   const auto of_tiles = [&progress](std::uint32_t done, std::uint32_t total) {
     progress(static_cast<double>(done) / total);
   };
   const sim::ChipResult result = render_on_chip(memory, plan, of_tiles);
-  const sim::FrameTiming timing = sim::replay(result.trace, *plan.scene.machine, {.core_count = plan.cores});
+  const sim::FrameTiming timing =
+      sim::replay(result.trace, *plan.scene.machine, {.core_count = plan.cores, .timeline = has_timeline});
   MadeFrame made;
   made.source = {content, hash_of_view(memory.settings.camera, plan.width, plan.height)};
   made.figures.triangles = memory.image.header.triangle_count;
   if (memory.image.has_grid) made.figures.lambda = memory.image.grid.lambda;
   made.figures.build = build;
+  if (build && build->builder == Builder::kCores) add_picture(timing, *plan.scene.machine, *made.figures.build);
   made.figures.render_cycles = timing.frame_cycles;
   made.figures.render_seconds = timing.seconds;
   const Picture<std::uint32_t> color = words_of_plane(memory.record, memory.color.bytes);
   made.figures.hash = image_hash(color.pixels);
   made.png = encode_png(color);
+  if (has_timeline) made.timeline = timeline_of(memory.cores_build, plan, timing);
   if (!plan.scene.quiet) made.note = unseen_note(memory, result, plan.mode);
   return made;
 }

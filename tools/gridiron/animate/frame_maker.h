@@ -20,6 +20,7 @@ struct MadeFrame {
   FrameFigures figures;
   std::vector<std::byte> png;
   std::optional<std::string> note{};  ///< that no pixel shows the scene
+  std::string timeline{};             ///< if it was requested
 };
 
 /// Takes the share of a frame that is done, 0..1.
@@ -43,7 +44,8 @@ class FrameMaker {
   /// @returns what a frame is made of, without rendering it.
   [[nodiscard]] virtual FrameSource source_of(std::size_t i) = 0;
 
-  [[nodiscard]] virtual MadeFrame make(std::size_t i, const FrameProgress& progress) = 0;
+  /// @param has_timeline  whether to make that too.
+  [[nodiscard]] virtual MadeFrame make(std::size_t i, bool has_timeline, const FrameProgress& progress) = 0;
 
   /// @returns the one build of all frames, where the camera alone moves.
   [[nodiscard]] virtual std::optional<SingleBuild> single_build() const { return std::nullopt; }
@@ -65,7 +67,10 @@ class FrameMaker {
 // What both do.
 
 /// Throws Failure (kUsage) if no frame of a scene of that kind can be rendered as requested, before it is read.
-void check_foreseen(const RenderRequest& request, const std::filesystem::path& input);
+void check_foreseen(const AnimateRequest& request, const std::filesystem::path& input);
+
+/// Says in a plan what builds the tree. Errors: Failure (kUsage) if that is not possible.
+void choose_builder(const AnimateRequest& request, RenderPlan& plan);
 
 /// Throws Failure (kBadInput) if a mesh or text scene cannot be rendered at all.
 void require_renderable(const SceneInput& input);
@@ -76,8 +81,10 @@ void require_renderable(const SceneInput& input);
 /// @returns the camera of a view with eye and at.
 [[nodiscard]] Camera camera_of(const ViewRequest& view, std::uint32_t width, std::uint32_t height);
 
-/// Renders a prepared frame. @param build  for its figures.
+/// Renders a prepared frame. @param build  for its figures; where the cores build for each frame, the begin and end of
+/// the picture's pass are added to it.
 [[nodiscard]] MadeFrame render_frame(FrameMemory& memory, const RenderPlan& plan, std::uint64_t content,
-                                     const std::optional<BuildCost>& build, const FrameProgress& progress);
+                                     const std::optional<BuildCost>& build, bool has_timeline,
+                                     const FrameProgress& progress);
 
 }  // namespace gridiron::tool

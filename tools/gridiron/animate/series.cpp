@@ -28,14 +28,15 @@ struct SeriesFrame {
 
 class Series final : public FrameMaker {
  public:
-  Series(const AnimateRequest& request, std::vector<std::filesystem::path> inputs) : request_(request.render) {
+  Series(const AnimateRequest& request, std::vector<std::filesystem::path> inputs)
+      : animate_(request), request_(request.render) {
     std::set<SceneKind> kinds;
     std::set<std::string> pictures;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       SeriesFrame frame{.input = std::move(inputs[i])};
       frame.kind = foreseen_kind(frame.input);
       require_kind(frame.input, frame.kind == SceneKind::kPacked);
-      if (kinds.insert(frame.kind).second) check_foreseen(request_, frame.input);
+      if (kinds.insert(frame.kind).second) check_foreseen(animate_, frame.input);
       frame.picture =
           is_descriptor(frame.input) ? numbered_picture(i, inputs.size()) : frame.input.stem().string() + ".png";
       if (!pictures.insert(frame.picture).second) usage_error("two frames would be called " + frame.picture);
@@ -49,7 +50,7 @@ class Series final : public FrameMaker {
 
   void prepare() override;
   [[nodiscard]] FrameSource source_of(std::size_t i) override;
-  [[nodiscard]] MadeFrame make(std::size_t i, const FrameProgress& progress) override;
+  [[nodiscard]] MadeFrame make(std::size_t i, bool has_timeline, const FrameProgress& progress) override;
 
  private:
   static void require_kind(const std::filesystem::path& input, bool is_packed) {
@@ -65,11 +66,13 @@ class Series final : public FrameMaker {
   void require_size(const SeriesFrame& frame);
   void frame_together();
 
+  const AnimateRequest& animate_;
   const RenderRequest& request_;
   std::optional<ViewRequest> camera_;
   std::vector<SeriesFrame> frames_;
   std::optional<CountPair> size_;  // of all pictures
   bool has_told_ = false;
+  std::optional<VertexOrder> vertex_order_;  // meshes of one topology have one
 };
 
 SceneInput Series::read(SeriesFrame& frame) const {
@@ -154,20 +157,22 @@ FrameSource Series::source_of(std::size_t i) {
   return {frame.content, hash_of_view(camera_of(view_of(frame), size.x, size.y), size.x, size.y)};
 }
 
-MadeFrame Series::make(std::size_t i, const FrameProgress& progress) {
+MadeFrame Series::make(std::size_t i, bool has_timeline, const FrameProgress& progress) {
   SeriesFrame& frame = frames_[i];
   SceneInput input = read(frame);
   require_size(frame);
   RenderRequest request = request_;
   request.scene.input = frame.input;
   request.view = frame.framed.value_or(request_.view);
-  const RequestedFrame requested = complete_frame(request, std::move(input), camera_);
+  RequestedFrame requested = complete_frame(request, std::move(input), camera_);
+  choose_builder(animate_, requested.plan);
   if (has_told_ && !request.scene.quiet) tell_notes(requested.input);
   if (!std::exchange(has_told_, true)) tell_frame_notes(request, requested);
   FrameMemory memory(frame_memory_bytes(requested.input, requested.plan));
+  if (!animate_.keeps_vertex_order) memory.vertex_order = &vertex_order_;
   prepare_frame(memory, requested.input, requested.plan, requested.view);
   return render_frame(memory, requested.plan, frame.content, cost_of_build(requested.input, memory, requested.plan),
-                      progress);
+                      has_timeline, progress);
 }
 
 }  // namespace

@@ -23,9 +23,12 @@ struct AnimateRequest {
   std::optional<std::filesystem::path> path;  ///< of the camera
   std::optional<std::uint32_t> turntable;     ///< frames of a camera that goes around once
   std::optional<std::filesystem::path> film;
-  std::optional<float> frames_per_second;        ///< of the film; nothing: kUsualFramesPerSecond
-  bool resume = false;                           ///< keeps the complete pictures of an earlier command
-  std::map<std::string, std::string> options{};  ///< as given, all but those on which no picture or figure depends
+  std::optional<std::filesystem::path> timeline;  ///< of the first frame
+  std::optional<float> frames_per_second;         ///< of the film; nothing: kUsualFramesPerSecond
+  std::optional<Builder> builder;                 ///< of trees; nothing: the cores where they can
+  bool keeps_vertex_order = false;                ///< that of the file, where the cores build
+  bool resume = false;                            ///< keeps the complete pictures of an earlier command
+  std::map<std::string, std::string> options{};   ///< as given, all but those on which no picture or figure depends
 
   [[nodiscard]] bool has_moving_camera() const { return path || turntable; }
 };

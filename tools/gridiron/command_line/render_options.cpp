@@ -131,6 +131,7 @@ void complete_animation(AnimateRequest& animate, const std::string& machine) {
   if (animate.path && render.camera) usage_error("--path and --camera: both are views of the whole frame");
   if (animate.path && render.view.from) usage_error("--path and --from: both say where the eye is");
   if (animate.frames_per_second && !animate.film) usage_error("--fps: is of --film");
+  if (animate.timeline && animate.resume) usage_error("--timeline: is not made again by --resume");
   std::vector<NamedFile> inputs = {{"--camera", render.camera}, {"--path", animate.path}, machine_file(machine)};
   for (std::filesystem::path& input : animate.inputs) {
     if (input.empty()) usage_error("FRAMES: '' is not a file name");
@@ -143,8 +144,8 @@ void complete_animation(AnimateRequest& animate, const std::string& machine) {
 
 // Options of which a picture or a figure depends, as given. Views and the machine are compared by their content.
 std::map<std::string, std::string> given_options(const CLI::App& app) {
-  constexpr std::string_view kOthers[] = {"FRAMES",   "--output", "--path", "--camera",  "--film",   "--fps",
-                                          "--resume", "--quiet",  "--help", "--machine", "--threads"};
+  constexpr std::string_view kOthers[] = {"FRAMES",   "--output", "--path", "--camera",  "--film",    "--fps",
+                                          "--resume", "--quiet",  "--help", "--machine", "--threads", "--timeline"};
   std::map<std::string, std::string> options;
   for (const CLI::Option* option : app.get_options()) {
     const std::string name = option->get_single_name();
@@ -200,6 +201,16 @@ Finish add_animate(CLI::App& app) {
   };
   add_parsed(app, "--fps", animate.frames_per_second, rate, "a number from 0.01 to 1000", "NUMBER",
              "frames a second of the film (default 24)");
+  add_choice(app, "--build", animate.builder,
+             Choices<Builder>{{"cores", Builder::kCores}, {"master", Builder::kMaster}},
+             "what builds the tree of each frame: the cores, whose passes are counted (default with best), or the "
+             "general core, whose time for a tree is not counted; it also builds all grids");
+  app.add_flag("--keep-vertex-order", animate.keeps_vertex_order,
+               "the cores read vertices in the order of the file; by default they are put in an order of space once, "
+               "when they are loaded");
+  add_output(app, "--timeline", animate.timeline,
+             "what each core did when for the first frame: the passes of its build, and the picture; Chrome trace "
+             "format; not with --resume");
   app.add_flag("--resume", animate.resume,
                "keep the complete pictures of an earlier command with the same options and inputs");
   add_tolerance(app, render.scene);

@@ -65,7 +65,9 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
   const GridChoice choice = choose_grid(input, mesh, plan.scene, limits, effects);
   require_fit(choice, plan.scene, input);
   const sim::MemoryRegion region = allocate(frame.memory, input.path, choice.need.image_bytes);
-  frame.image = build_image(input, mesh, choice, region.bytes, effects);
+  frame.image = plan.builder == Builder::kCores ? build_on_cores(frame.memory, input, mesh, plan, choice, region,
+                                                                 frame.vertex_order, effects, frame.cores_build)
+                                                : build_image(input, mesh, choice, region.bytes, effects);
   frame.need = choice.need;
   frame.wanted_lambda = choice.wanted_lambda;
   frame.build_seconds = stopwatch.both();

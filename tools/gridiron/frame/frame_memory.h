@@ -13,6 +13,7 @@
 #include "base/stopwatch.h"
 #include "gridiron/scene/scene_input.h"
 #include "render_plan.h"
+#include "tree_building.h"
 
 namespace gridiron::tool {
 
@@ -23,6 +24,9 @@ struct FrameMemory {
   sim::SimMemory memory;
   SceneImageView image{};
   GridNeed need{};  ///< of the image; nothing where it was packed
+  /// Where the cores build: of the last mesh, found anew if it is not of this one. Null: vertices lie as in the mesh.
+  std::optional<VertexOrder>* vertex_order = nullptr;
+  CoresBuild cores_build;  ///< empty where the general core builds
   FrameSettings settings{};
   FrameRecord record{};
   MainAddress image_address{}, record_address{};

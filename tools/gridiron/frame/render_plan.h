@@ -59,6 +59,12 @@ struct Host {
 };
 [[nodiscard]] Host this_host();
 
+/// What builds the tree of a scene image.
+enum class Builder : std::uint8_t {
+  kMaster,  ///< the general core, that is, prepare
+  kCores,   ///< the cores of the simulated chip
+};
+
 /// A completed frame; the commands carry it out.
 struct RenderPlan {
   SceneRequest scene;    ///< with a configuration
@@ -81,6 +87,7 @@ struct RenderPlan {
   std::uint64_t seed = 0;
   std::uint32_t repeats = 1;
   bool has_bound = false;  ///< of tiles, for the camera
+  Builder builder = Builder::kMaster;
 };
 
 /// Rejects impossible requests, whatever the scene is. Errors: Failure (kUsage).

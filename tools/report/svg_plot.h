@@ -7,9 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "experiment/statistics.h"
+namespace gridiron::plot {
 
-namespace gridiron::experiment {
+struct Point2 {
+  double x = 0, y = 0;
+};
 
 /// Area of the plot inside the picture, in SVG units; y grows downwards.
 struct PlotArea {
@@ -104,4 +106,4 @@ struct HistogramChart {
 /// @returns the text with &, <, > and quotes as entities.
 [[nodiscard]] std::string escape_markup(std::string_view text);
 
-}  // namespace gridiron::experiment
+}  // namespace gridiron::plot

@@ -1,14 +1,15 @@
 // SVG plots. SPDX-License-Identifier: Apache-2.0
-#include "experiment/svg_plot.h"
+#include "report/svg_plot.h"
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
-#include "experiment/table.h"
+#include "base/numbers.h"
 
-namespace gridiron::experiment {
+namespace gridiron::plot {
 namespace {
 
 // Okabe and Ito's colours, which remain distinct with red-green colour blindness.
@@ -17,6 +18,20 @@ constexpr std::array<std::string_view, 8> kColors = {"#0072b2", "#d55e00", "#009
 
 std::string_view color_of(std::size_t index) {
   return kColors[index % kColors.size()];
+}
+
+std::string number_text(double number) {
+  return std::isfinite(number) ? tool::shortest_text(number) : "";
+}
+
+std::string fixed_text(double number, int decimals) {
+  std::array<char, 400> text{};
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed, decimals);
+  std::string fixed = error == std::errc{} && std::isfinite(number) ? std::string(text.data(), end) : "";
+  // No sign for a rounded zero.
+  if (!fixed.empty() && fixed.front() == '-' && fixed.find_first_not_of("-0.") == std::string::npos) fixed.erase(0, 1);
+  return fixed;
 }
 
 std::string units(double place) {
@@ -490,4 +505,4 @@ std::string histogram_chart_svg(const HistogramChart& chart) {
   return drawing.finish();
 }
 
-}  // namespace gridiron::experiment
+}  // namespace gridiron::plot

@@ -1,13 +1,13 @@
 // SVG plots: well formed, and values land where they should. SPDX-License-Identifier: Apache-2.0
-#include "experiment/svg_plot.h"
+#include "report/svg_plot.h"
 
-#include "markup.h"
+#include "../experiment/markup.h"
 #include "support/test_headers.h"
 
 namespace gridiron::test {
 namespace {
 
-using namespace experiment;
+using namespace plot;
 
 std::vector<Point2> points_of(const MarkupElement& polyline) {
   std::vector<Point2> points;
