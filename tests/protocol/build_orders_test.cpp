@@ -172,9 +172,10 @@ TEST_P(BuildOrders, EveryOrderOfThoseThatArePendingGivesTheSame) {
 TEST_P(BuildOrders, BytesMayComeAfterAnyCall) {
   for (std::uint32_t call = 0; call < reference_.calls.size(); ++call) {
     if (pending_after(reference_, call).empty()) continue;
-    const OrderOutcome outcome = build_.run({.schedule = [call](std::uint32_t now, std::span<const std::uint32_t> open) {
+    const auto last_first = [call](std::uint32_t now, std::span<const std::uint32_t> open) {
       return now == call && !open.empty() ? open.size() - 1 : open.size();
-    }});
+    };
+    const OrderOutcome outcome = build_.run({.schedule = last_first});
     ASSERT_TRUE(outcome.is_as(reference_)) << "call " << call << ": " << outcome.violation;
   }
 }

@@ -8,6 +8,7 @@
 #include <gridiron/sim/build_pass_work.h>
 #include <gridiron/sim/passes.h>
 
+#include "build_entry.h"
 #include "core/build/grid/line_buffer.h"
 #include "support/ply_load.h"
 #include "support/test_mesh.h"
@@ -23,6 +24,7 @@ struct Built {
   std::vector<VertexTriangle> records;
   std::vector<TreeNode> nodes;
   std::vector<sim::FrameTrace> traces;  // of passes
+  std::uint64_t transfers = 0;          // of all passes
   std::string words;                    // of rules that were broken
 };
 
@@ -71,7 +73,22 @@ struct Way {
   std::uint32_t queue_depth = 16;
   bool backwards = false;
   std::optional<std::uint32_t> record_room{}, node_room{};
+  std::uint64_t fail_transfer = 0;
+  bool is_instrumented = false;
 };
+
+// Runs a pass by code whose loads and stores are checked. @param data  BuildStore, then room for a plan.
+template <class Layout>
+Status run_instrumented([[maybe_unused]] sim::SimCore& core, [[maybe_unused]] std::span<std::byte> data,
+                        [[maybe_unused]] const BuildPlan& plan, [[maybe_unused]] BuildPass pass) {
+#ifdef GRIDIRON_INSTRUMENTED
+  const auto& copy = *new (data.data() + sizeof(BuildStore<Layout>)) BuildPlan(plan);
+  const sim::SimCore::AccessScope scope(core, __builtin_frame_address(0));
+  return build_instrumented(Layout::kArenaBytes == 65536, core, data.data(), copy, pass);
+#else
+  return Status::kBadParameter;
+#endif
+}
 
 // Runs the passes of a plan.
 template <class Layout>
@@ -83,13 +100,16 @@ sim::PassesResult run_plan(sim::SimMemory& memory, const BuildPlan& plan, const 
       // Whatever ran before has left something there.
       std::ranges::fill(data, std::byte{0x5A});
       auto& store = *reinterpret_cast<BuildStore<Layout>*>(data.data());
+      if constexpr (std::is_same_v<decltype(core), sim::SimCore&>) {
+        if (way.is_instrumented) return run_instrumented<Layout>(core, data, plan, static_cast<BuildPass>(i));
+      }
       if (!way.backwards) return run_build_pass(core, store, plan, static_cast<BuildPass>(i));
       Backwards reversed(core, plan.item_counts[i]);
       return run_build_pass(reversed, store, plan, static_cast<BuildPass>(i));
     };
     passes.push_back({.name = "pass",
                       .items = {.most = plan.item_counts[i]},
-                      .data_bytes = sizeof(BuildStore<Layout>),
+                      .data_bytes = sizeof(BuildStore<Layout>) + (way.is_instrumented ? sizeof(BuildPlan) : 0),
                       .writable = writable,
                       .kernel = sim::PassKernel(kernel),
                       .engine = &sim::work_of(static_cast<BuildPass>(i))});
@@ -100,6 +120,7 @@ sim::PassesResult run_plan(sim::SimMemory& memory, const BuildPlan& plan, const 
   options.completion = way.completion;
   options.seed = way.seed;
   options.limits.queue_depth = way.queue_depth;
+  options.fail_transfer = way.fail_transfer;
   options.store = Layout::kArenaBytes > 65536 ? sim::StoreSize::k256KB : sim::StoreSize::k64KB;
   return sim::run_passes(memory, passes, options);
 }
@@ -151,6 +172,7 @@ Built built_by_cores(const TestMesh& mesh, std::uint32_t leaf_triangles, TreeOrd
   sim::PassesResult run = run_plan<Layout>(memory, plan, way, writable);
   tree.status = run.status;
   tree.words = words_of_violations(run);
+  tree.transfers = run.transfers;
   for (sim::PassRun& pass : run.passes) tree.traces.push_back(std::move(pass.result.trace));
   if (tree.status != Status::kOk) return tree;
   std::memcpy(&tree.size, result.bytes.data(), sizeof tree.size);
@@ -385,6 +407,36 @@ std::vector<std::byte> image_by_cores(const TestMesh& mesh, std::uint32_t leaf_t
   const auto rest = image.bytes.subspan(header.image_bytes);
   EXPECT_TRUE(std::ranges::all_of(rest, [](std::byte byte) { return byte == std::byte{0xA5}; })) << "behind its end";
   return {image.bytes.begin(), image.bytes.begin() + static_cast<std::ptrdiff_t>(header.image_bytes)};
+}
+
+// Each transfer that fails ends the build with its status, in whichever pass it is.
+TYPED_TEST(TreeBuild, EveryFailedTransferSurfaces) {
+  TestMesh mesh = make_random_soup(90, 1, 6);
+  for (int i = 0; i < 40; ++i) mesh.append(make_triangle({0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}));
+  const Built whole = built_by_cores<TypeParam>(mesh, 2, TreeOrder::kForAnyHit, {});
+  ASSERT_EQ(whole.status, Status::kOk) << whole.words;
+  std::set<std::size_t> passes;
+  for (std::uint64_t i = 1; i <= whole.transfers; ++i) {
+    Way way = {.cores = i % 2 == 0 ? 1u : 3u, .completion = Completion::kLate};
+    way.fail_transfer = i;
+    const Built failed = built_by_cores<TypeParam>(mesh, 2, TreeOrder::kForAnyHit, way);
+    ASSERT_EQ(failed.status, Status::kTransferFailed) << "transfer " << i << " of " << whole.transfers;
+    passes.insert(failed.traces.size());
+  }
+  EXPECT_EQ(passes.size(), kBuildPassCount - 1u) << "every pass but that of an image";
+}
+
+// No load or store beyond the store and the stack, nor of bytes that are under way.
+TYPED_TEST(TreeBuild, InstrumentedCodeStaysInItsStore) {
+#ifndef GRIDIRON_INSTRUMENTED
+  GTEST_SKIP() << "no instrumentation in this build";
+#endif
+  TestMesh mesh = make_random_soup(5003, 1, 4);
+  mesh.append(equal_triangles(TypeParam::kBucketKeys * 2 + 77));
+  for (const std::uint32_t leaf : {3u, 16u}) {
+    const Way way = {.cores = 3, .completion = Completion::kLate, .is_instrumented = true};
+    EXPECT_EQ(image_by_cores<TypeParam>(mesh, leaf, way), image_by_one(mesh, leaf));
+  }
 }
 
 // Header, section table, record of the tree, triangles, padding, nodes and check value.
