@@ -327,6 +327,22 @@ TYPED_TEST(TreeBuild, OfDeepTrees) {
   for (const std::uint32_t leaf : {1u, 2u}) expect_same_any_way<TypeParam>(geometric, leaf);
 }
 
+// More triangles of one code than fit below depth 8, so that a node there cuts the crowd by number.
+TYPED_TEST(TreeBuild, OfALargeCrowdThatIsCutByNumber) {
+  constexpr std::uint32_t kMany = 65536 + 4000;
+  TestMesh nested = moved(make_random_soup(kMany, 0.3f, 1), 1e-20f);
+  float scale = 1e-20f;
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    scale *= 2000;
+    nested.append(moved(make_random_soup(40, 0.3f, i), scale));
+  }
+  const Built one = built_by_one(nested, 1, TreeOrder::kForAnyHit);
+  ASSERT_EQ(one.status, Status::kOk);
+  ASSERT_EQ(one.size.depth, kMaxTreeDepth);
+  // Above depth 8 a node has more triangles than it could have without the cut.
+  expect_same(built_by_cores<TypeParam>(nested, 1, TreeOrder::kForAnyHit, {.cores = 6}), one);
+}
+
 // The transfers of an item do not depend on what the core did before.
 TYPED_TEST(TreeBuild, HasTheSameTraceOnAnyNumberOfCores) {
   const TestMesh mesh = joined(make_height_field(60, 0.2f, 9), moved(equal_triangles(500), 0.001f));

@@ -28,6 +28,17 @@ struct CountedRun {
 /// costs. Errors: as above.
 [[nodiscard]] Counts run_counted(const CountedRun& run, const Branches& usual, const PipeRules& rules);
 
+/// A pass of a build on one core.
+struct CountedPass {
+  std::span<std::byte> memory;           ///< from address 0 on
+  std::span<const std::byte> plan;       ///< BuildPlan of BuildLayout256K
+  std::uint32_t number = 0;              ///< of BuildPass
+  std::span<const std::uint32_t> items;  ///< that the core claims
+};
+/// As of a frame. Errors: std::runtime_error where the pass fails.
+[[nodiscard]] Branches branches_of(const CountedPass& pass);
+[[nodiscard]] Counts run_counted(const CountedPass& pass, const Branches& usual, const PipeRules& rules);
+
 /// A ray and a triangle that are decided in integers: sign, distance, and its order with the distance of the same
 /// triangle from another corner.
 struct ExactDecision {

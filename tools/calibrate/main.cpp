@@ -1,5 +1,7 @@
 // gridiron_calibrate: writes the table of work costs, or shows what it is made of.
 // Memory: little. Threads: one. SPDX-License-Identifier: Apache-2.0
+#include <build_count.h>
+#include <build_time.h>
 #include <direct_count.h>
 #include <work_table.h>
 
@@ -10,6 +12,7 @@
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "base/failure.h"
 #include "base/progress.h"
@@ -19,14 +22,17 @@
 namespace {
 
 constexpr std::string_view kUsage =
-    "usage: gridiron_calibrate [--bvh | --tree] [FILE | --memories FOLDER | --check SCENES | --rules]\n"
+    "usage: gridiron_calibrate [--bvh | --tree | --build] [FILE | --memories FOLDER | --check SCENES | --times SCENES "
+    "| --rules]\n"
     "Counts the operations of the kernel on eight small frames and puts them through the pipeline model.\n"
     "  --bvh          of the cached BVH instead, on four frames\n"
     "  --tree         of eye rays through the tree, on nine frames\n"
+    "  --build        of the passes that build the tree, on four meshes; FILE or --check alone\n"
     "  FILE           write the table there: sim_platform/gridiron/sim/work_costs.h, of the cached BVH\n"
     "                 sim_platform/gridiron/bvh/bvh_costs.h, of the tree sim_platform/gridiron/sim/tile_costs.h\n"
     "  --memories     write the frames' memories there, for second_opinion/run\n"
     "  --check        compare prices with direct counts of windows of the views of these scans, and print the table\n"
+    "  --times        how long the passes that build trees take for these scans, and what binds\n"
     "  --rules        what other assumptions of the pipeline model would change, as a table\n"
     "Without FILE: every kind of work with its operations by class, for superblocks of 1, 2, 4 and 8 basic blocks.\n";
 
@@ -40,6 +46,10 @@ int run(int argument_count, char** arguments) {
     std::fputs(calibrate::rules_text().c_str(), stdout);
     return 0;
   }
+  if (argument_count == 3 && std::string_view(arguments[1]) == "--times") {
+    std::fputs(calibrate::build_times_text(arguments[2]).c_str(), stdout);
+    return 0;
+  }
   if (argument_count == 3 && std::string_view(arguments[1]) == "--check") {
     gridiron::tool::Progress progress(true, "windows");
     auto counts = calibrate::count_windows(arguments[2], std::max(1u, std::thread::hardware_concurrency()),
@@ -48,6 +58,26 @@ int run(int argument_count, char** arguments) {
     for (calibrate::DirectCount& frame : calibrate::count_effects()) counts.push_back(std::move(frame));
     std::fputs(calibrate::direct_count_kinds(counts).c_str(), stdout);
     return 0;
+  }
+  if (argument_count > 1 && std::string_view(arguments[1]) == "--build") {
+    if (argument_count == 4 && std::string_view(arguments[2]) == "--check") {
+      const std::vector<calibrate::BuildCount> counts = calibrate::count_scans(arguments[3]);
+      std::fputs((calibrate::build_count_table(counts) + "\n" + calibrate::build_count_kinds(counts)).c_str(), stdout);
+      return 0;
+    }
+    if (argument_count == 2) {
+      std::fputs(calibrate::build_report_text(calibrate::count_builds()).c_str(), stdout);
+      return 0;
+    }
+    if (argument_count == 3 && arguments[2][0] != '-') {
+      (void)gridiron::tool::resolve_output(arguments[2]);
+      gridiron::tool::AtomicFile file(arguments[2]);
+      file.write(calibrate::build_table_text(calibrate::count_builds()));
+      file.commit();
+      return 0;
+    }
+    std::fputs(kUsage.data(), stderr);
+    return 2;
   }
   // What is counted, and the texts of it.
   struct Subject {

@@ -141,10 +141,13 @@ bool PipeModel::is_usually_taken(Site site) const {
   return found != usual_.end() && found->second;
 }
 
+// Of a loop over constants, without a branch.
+constexpr std::uint32_t kUnrolledTurns = 16;
+
 void PipeModel::use_condition(bool value, Node node) {
   if (loop_ == 0) {
     conditions_.push_back(emit(OpClass::kFixed, value, node));
-  } else {
+  } else if (turns_ == nullptr || node != 0 || ++*turns_ % kUnrolledTurns == 0) {
     branch(loop_, value, node);
   }
   loop_ = 0;

@@ -141,8 +141,12 @@ class PipeModel {
   Node emit_product(std::uint64_t tie, Node a, Node b);
   /// A branch that ends the block, on `condition` and on what use_condition() joined.
   void branch(Site site, bool taken, Node condition);
-  /// The next condition that is used as a bool is that of the loop at `site`; 0: of none.
-  void expect_loop(Site site) { loop_ = site; }
+  /// The next condition that is used as a bool is that of the loop at `site`; 0: of none. @param turns  of a loop that
+  /// is unrolled where its condition is constant: a branch each 16 of them, else nothing. Null: of another one.
+  void expect_loop(Site site, std::uint32_t* turns = nullptr) {
+    loop_ = site;
+    turns_ = turns;
+  }
   /// A condition is used as a bool: that of a loop is a branch; else it is joined to others, or selects, which is one
   /// operation.
   void use_condition(bool value, Node node);
@@ -223,8 +227,9 @@ class PipeModel {
   std::uint64_t clock_ = 0;                             // of the last issue
   std::vector<std::uint64_t> ready_, history_, depth_;  // by node, of the last kRememberedNodes
   std::vector<Node> conditions_;
-  std::optional<WorkId> missed_;  // of a branch that went its rarer way and is not charged yet
-  Site loop_ = 0;                 // whose condition is used next
+  std::optional<WorkId> missed_;    // of a branch that went its rarer way and is not charged yet
+  Site loop_ = 0;                   // whose condition is used next
+  std::uint32_t* turns_ = nullptr;  // of it
   std::vector<Node> addresses_;
   bool addresses_used_ = false;
   std::uintptr_t stack_base_ = 0, store_base_ = 0;

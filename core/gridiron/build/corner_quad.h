@@ -4,42 +4,13 @@
 
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
-#include <gridiron/build/lattice.h>
+#include <gridiron/build/quad_words.h>
 #include <gridiron/build/triangle_records.h>
-#include <gridiron/platform/status.h>
-#include <gridiron/scene/mesh.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace gridiron {
-
-/// Triangles ahead of those that are taken whose corners the caches are asked for; a multiple of four.
-inline constexpr std::size_t kTrianglesAhead = 16;
-
-/// x, y and z, and a number without meaning.
-using CornerQuad = Lanes<4>::Float;
-
-/// @returns the point; the last lane is 0.
-[[nodiscard]] GRIDIRON_INLINE CornerQuad quad_of(const Vec3& point) {
-  typedef double PointHalves __attribute__((vector_size(16)));
-  static_assert(sizeof(Vec3) == 12);
-  double first_two;  // one load of eight bytes; their pattern is no number
-  __builtin_memcpy(&first_two, &point, sizeof first_two);
-  const PointHalves low = {first_two, 0.0};
-  const Lanes<4>::FloatVector high = {point.z, 0.0f, 0.0f, 0.0f};
-  return CornerQuad(__builtin_shufflevector(reinterpret_cast<Lanes<4>::FloatVector>(low), high, 0, 1, 4, 5));
-}
-/// @returns a point that is not the last one; the last lane is a coordinate of the next one.
-[[nodiscard]] GRIDIRON_INLINE CornerQuad inner_quad(std::span<const Vec3> points, std::size_t index) {
-  Lanes<4>::FloatVector words;
-  __builtin_memcpy(&words, reinterpret_cast<const std::byte*>(points.data()) + index * sizeof(Vec3), sizeof words);
-  return CornerQuad(words);
-}
-[[nodiscard]] GRIDIRON_INLINE Vec3 vec3_of(CornerQuad quad) {
-  return {quad.v[0], quad.v[1], quad.v[2]};
-}
 
 /// y, z, x.
 [[nodiscard]] GRIDIRON_INLINE CornerQuad turned(CornerQuad quad) {
@@ -78,55 +49,12 @@ struct QuadRows {
   }
 };
 
-// --- Prefetch -----------------------------------------------------------------------------------------------------
-
-[[nodiscard]] GRIDIRON_INLINE std::span<const Vec3> stored_vertices(const MeshView& mesh) {
-  return mesh.vertices;
-}
-[[nodiscard]] GRIDIRON_INLINE std::span<const Vec3> stored_vertices(const LatticeMesh& mesh) {
-  return mesh.vertices.vertices;
-}
-/// Asks the caches for a triangle's corners, whose indices may be wrong.
-template <class Mesh>
-GRIDIRON_INLINE void ask_for_corners(const Mesh& mesh, const UVec3& triangle) {
-  const std::uint64_t vertices = reinterpret_cast<std::uintptr_t>(stored_vertices(mesh).data());
-  for (int corner = 0; corner < 3; ++corner) {
-    __builtin_prefetch(reinterpret_cast<const void*>(vertices + triangle[corner] * std::uint64_t{sizeof(Vec3)}));
-  }
-}
-
-[[nodiscard]] GRIDIRON_INLINE bool are_below(const UVec3& indices, std::int64_t end) {
-  return indices.x < end && indices.y < end && indices.z < end;
-}
-/// Whether a triangle's indices are right, and none is the last one.
-template <class Mesh>
-[[nodiscard]] GRIDIRON_INLINE bool are_inner(const Mesh& mesh, const UVec3& triangle) {
-  return are_below(triangle, static_cast<std::int64_t>(mesh.vertices.size()) - 1);
-}
-
-// --- Triangles ----------------------------------------------------------------------------------------------------
-
 /// The corners of a triangle.
 struct CornerQuads {
   CornerQuad a, b, c;
 
   // Of the bound below.
-  static constexpr Lanes<4>::FloatVector kShare = {0x1p-20f, 0x1p-20f, 0x1p-20f, 0x1p-20f};
-  static constexpr Lanes<4>::FloatVector kLeast = {0x1p-140f, 0x1p-140f, 0x1p-140f, 0x1p-140f};
-
-  /// @param triangle  its indices are right.
-  template <class Mesh>
-  [[nodiscard]] static GRIDIRON_INLINE CornerQuads of(const Mesh& mesh, const UVec3& triangle) {
-    return {quad_of(mesh.vertices[triangle.x]), quad_of(mesh.vertices[triangle.y]), quad_of(mesh.vertices[triangle.z])};
-  }
-  /// The same with single loads, where no corner is the last vertex: see are_inner().
-  [[nodiscard]] static GRIDIRON_INLINE CornerQuads inner(const MeshView& mesh, const UVec3& triangle) {
-    return {inner_quad(mesh.vertices, triangle.x), inner_quad(mesh.vertices, triangle.y),
-            inner_quad(mesh.vertices, triangle.z)};
-  }
-  [[nodiscard]] static GRIDIRON_INLINE CornerQuads inner(const LatticeMesh& mesh, const UVec3& triangle) {
-    return of(mesh, triangle);
-  }
+  static constexpr float kShare = 0x1p-20f, kLeast = 0x1p-140f;
 
   [[nodiscard]] GRIDIRON_INLINE CornerQuad low() const { return Lanes<4>::min(Lanes<4>::min(a, b), c); }
   [[nodiscard]] GRIDIRON_INLINE CornerQuad high() const { return Lanes<4>::max(Lanes<4>::max(a, b), c); }
@@ -165,11 +93,11 @@ struct FourBoxes {
   }
   /// Empties the boxes whose bit is not set.
   void keep(std::uint32_t bits) {
-    for (int lane = 0; lane < 4; ++lane) {
-      if ((bits >> lane & 1u) != 0) continue;
-      for (CornerQuad* row : {&low.x, &low.y, &low.z}) row->v[lane] = kFloatMax;
-      for (CornerQuad* row : {&high.x, &high.y, &high.z}) row->v[lane] = -kFloatMax;
-    }
+    using L = Lanes<4>;
+    const L::Mask kept = L::mask_from_bits(bits);
+    const CornerQuad most(kFloatMax), least(-kFloatMax);
+    low = {L::select(kept, low.x, most), L::select(kept, low.y, most), L::select(kept, low.z, most)};
+    high = {L::select(kept, high.x, least), L::select(kept, high.y, least), L::select(kept, high.z, least)};
   }
 };
 
@@ -219,47 +147,13 @@ struct FourTriangles {
     const std::uint32_t open =
         (have_size(difference(b, a)) & have_size(difference(c, a)) & have_size(difference(c, b))).bits() & ~sure;
     for (int lane = 0; lane < 4 && open != 0; ++lane) {
-      const auto corner = [lane](const QuadRows& rows) { return Vec3(rows.x.v[lane], rows.y.v[lane], rows.z.v[lane]); };
+      const auto corner = [lane](const QuadRows& rows) {
+        return Vec3(lane_of(rows.x, lane), lane_of(rows.y, lane), lane_of(rows.z, lane));
+      };
       if ((open >> lane & 1u) != 0 && !has_zero_area(corner(a), corner(b), corner(c))) sure |= 1u << lane;
     }
     return sure;
   }
 };
-
-/// Calls take(triangle number of the first, four triangles, bits of those that are there and have an area) for all
-/// triangles of a mesh, in order.
-///
-/// Errors: kBadIndex.
-template <class Mesh, class Take>
-[[nodiscard]] GRIDIRON_INLINE Status for_each_four(const Mesh& mesh, Take&& take) {
-  const std::size_t count = mesh.triangles.size();
-  const auto vertex_count = static_cast<std::int64_t>(mesh.vertices.size());
-  UVec3 last_four[4];
-  for (std::size_t i = 0; i < count; i += 4) {
-    const UVec3* four = &mesh.triangles[i];
-    std::uint32_t there = 15u;
-    if (count - i < 4) {
-      there = (1u << (count - i)) - 1u;
-      for (std::size_t k = 0; k < 4; ++k) last_four[k] = mesh.triangles[i + k < count ? i + k : count - 1];
-      four = last_four;
-    }
-    if (i + kTrianglesAhead + 4 <= count) {
-      const UVec3* const later = four + kTrianglesAhead;
-      for (int k = 0; k < 4; ++k) ask_for_corners(mesh, later[k]);
-    }
-    CornerQuads corners[4];
-    if (are_inner(mesh, four[0]) && are_inner(mesh, four[1]) && are_inner(mesh, four[2]) && are_inner(mesh, four[3])) {
-      for (int k = 0; k < 4; ++k) corners[k] = CornerQuads::inner(mesh, four[k]);
-    } else {
-      for (int k = 0; k < 4; ++k) {
-        if (!are_below(four[k], vertex_count)) return Status::kBadIndex;
-        corners[k] = CornerQuads::of(mesh, four[k]);
-      }
-    }
-    const FourTriangles triangles = FourTriangles::of(corners);
-    take(static_cast<std::uint32_t>(i), triangles, triangles.with_area() & there);
-  }
-  return Status::kOk;
-}
 
 }  // namespace gridiron

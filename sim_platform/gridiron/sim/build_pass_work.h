@@ -1,13 +1,14 @@
-// Names and prices of the kinds of work of the passes that build the tree. The prices are ESTIMATES: operations of the
-// source counted by hand, on a core of two in-order pipes, by the rules of tools/calibrate/README.md. They are not
-// calibrated yet.
+// Names and prices of the kinds of work of the passes that build the tree.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/build/passes/build_plan.h>
 #include <gridiron/build/passes/build_work.h>
+#include <gridiron/sim/build_pass_costs.h>
 #include <gridiron/sim/engine_work.h>
 
+#include <array>
+#include <cstdint>
 #include <iterator>
 #include <string_view>
 
@@ -19,36 +20,15 @@ inline constexpr std::uint32_t kBuildPassesId = 200;
 // clang-format off
 inline constexpr WorkKind kBuildPassKinds[] = {
     {BuildWork::kVertex, "bounded_vertex"}, {BuildWork::kCorner, "corner"}, {BuildWork::kMissedCorner, "missed_corner"},
-    {BuildWork::kCodedGroup, "coded_group"}, {BuildWork::kDroppedTriangle, "dropped_triangle"},
+    {BuildWork::kCodedGroup, "coded_group"}, {BuildWork::kSortedRecord, "sorted_record"},
     {BuildWork::kSortCount, "sort_count"}, {BuildWork::kMovedKey, "moved_key"},
-    {BuildWork::kExchangedKey, "exchanged_key"}, {BuildWork::kCut, "cut"}, {BuildWork::kGatheredKey, "gathered_key"},
+    {BuildWork::kExchangedKey, "exchanged_key"}, {BuildWork::kGatheredKey, "gathered_key"},
     {BuildWork::kMiddleGroup, "middle_group"}, {BuildWork::kAgainGroup, "again_group"},
-    {BuildWork::kAskedRecord, "asked_record"}, {BuildWork::kTakenRecord, "taken_record"},
+    {BuildWork::kAskedRecord, "asked_record"}, {BuildWork::kRecordSpan, "record_span"},
+    {BuildWork::kTakenRecord, "taken_record"},
     {BuildWork::kLeaf, "built_leaf"},
     {BuildWork::kPart, "part"}, {BuildWork::kWeighedPart, "weighed_part"}, {BuildWork::kSearchStep, "search_step"},
     {BuildWork::kNode, "built_node"}, {BuildWork::kNumberedNode, "numbered_node"}};
-
-inline constexpr WorkPrice kBuildPassPrices[] = {
-    {BuildWork::kVertex, 8},         // 2 loads, a shuffle; 2 + 2 + 3 even operations, unrolled
-    {BuildWork::kCorner, 10},        // in lanes; of each a load, a compare and a store of words
-    {BuildWork::kMissedCorner, 60},  // two lines looked for; without the command
-    {BuildWork::kCodedGroup, 175},   // 12 corners and 12 quadwords of records: 105 odd; boxes, areas, codes: 155 even
-    {BuildWork::kDroppedTriangle, 40},   // two equal corners; a triangle that has none takes some 260
-    {BuildWork::kSortCount, 5},
-    {BuildWork::kMovedKey, 22},      // counted and moved: 11 even, 16 odd
-    {BuildWork::kExchangedKey, 14},  // with a branch that goes the rarer way one time in three
-    {BuildWork::kCut, 120},          // nine steps
-    {BuildWork::kGatheredKey, 8},
-    {BuildWork::kMiddleGroup, 80},
-    {BuildWork::kAgainGroup, 130},
-    {BuildWork::kAskedRecord, 20},   // without the command
-    {BuildWork::kTakenRecord, 45},   // box, six quadwords copied
-    {BuildWork::kLeaf, 60},
-    {BuildWork::kPart, 250},         // two levels by way of doubles, parts behind it moved
-    {BuildWork::kWeighedPart, 15},   // 64 bits
-    {BuildWork::kSearchStep, 24},    // one chain: load, compare, select
-    {BuildWork::kNode, 1300},        // 16 densities, 60 exchanges of their order
-    {BuildWork::kNumberedNode, 190}};
 
 inline constexpr WorkKind kCheckPassKinds[] = {{CheckWork::kCheckedLine, "checked_line"}};
 
@@ -56,6 +36,15 @@ inline constexpr WorkKind kCheckPassKinds[] = {{CheckWork::kCheckedLine, "checke
 // shifts, a carry and sums: 11 even.
 inline constexpr WorkPrice kCheckPassPrices[] = {{CheckWork::kCheckedLine, 92}};
 // clang-format on
+
+/// Of the table of calibrated costs.
+inline constexpr auto kBuildPassPrices = [] {
+  std::array<WorkPrice, kBuildWorkCount> prices{};
+  for (std::uint32_t i = 0; i < kBuildWorkCount; ++i) {
+    prices[i] = {WorkId(kSharedWorkCount + i), kBuildPassCosts[i].cycles};
+  }
+  return prices;
+}();
 
 /// The passes that build the tree.
 inline constexpr EngineWork kBuildPassesWork =

@@ -1,5 +1,6 @@
 // Prices hold where they were not made: against direct counts of windows of the experiment's views.
 // SPDX-License-Identifier: Apache-2.0
+#include <build_count.h>
 #include <direct_count.h>
 
 #include <cmath>
@@ -28,6 +29,14 @@ TEST(DirectCount, PricesAreWithinFivePercentOfWhatViewsTake) {
   const std::string text{std::istreambuf_iterator<char>(readme), {}};
   EXPECT_NE(text.find(direct_count_table(counts)), std::string::npos)
       << "the table of the README is another one: write it anew with gridiron_calibrate --check";
+}
+
+TEST(DirectCount, PricesAreWithinFivePercentOfWhatBuildsTake) {
+  const test::SharedFile scenes = test::find_scene("");
+  GRIDIRON_SKIP_IF_MISSING(scenes);
+  const std::vector<BuildCount> counts = count_scans(scenes.path);
+  ASSERT_FALSE(counts.empty());
+  for (const BuildCount& one : counts) EXPECT_LT(std::abs(one.error()), 0.05) << one.scan;
 }
 
 }  // namespace

@@ -289,6 +289,16 @@ struct Counted {
   }
   constexpr Counted& operator++() { return *this = Counted(*this + T{1}); }
   constexpr Counted& operator--() { return *this = Counted(*this - T{1}); }
+  constexpr Counted operator++(int) {
+    const Counted before = *this;
+    ++*this;
+    return before;
+  }
+  constexpr Counted operator--(int) {
+    const Counted before = *this;
+    --*this;
+    return before;
+  }
 
  private:
   constexpr void make(Node node) {
@@ -460,26 +470,34 @@ consteval Site file_number(const char* name) {
 }
 
 /// A loop whose one condition is a branch. Those whose index is an unsigned number of the kernel, and those of several
-/// conditions, have operations in its place: so the tables were counted.
+/// conditions, have operations in its place: so the tables were counted. Not so in the passes of a build, whose loops
+/// are long and have no other branches: there the first condition of any loop is one, and loops over constants, which a
+/// compiler unrolls, have one each 16 turns.
 struct CountedLoop {
   Site site;
+  bool is_unrolled;
+  std::uint32_t turns = 0;
 
-  constexpr CountedLoop(Site place, std::string_view head)
-      : site(head.starts_with("std::uint") || head.find("&&") != head.npos ? 0 : place) {
-    expect_condition(site);
+  constexpr CountedLoop(Site place, std::string_view file, std::string_view head)
+      : site(place), is_unrolled(file.find("/build/") != file.npos) {
+    if (!is_unrolled && (head.starts_with("std::uint") || head.find("&&") != head.npos)) site = 0;
+    expect_condition();
   }
-  constexpr ~CountedLoop() { expect_condition(0); }
-  static constexpr void expect_condition(Site site) {
-    if (!std::is_constant_evaluated()) PipeModel::current().expect_loop(site);
+  constexpr ~CountedLoop() { expect_none(); }
+  constexpr void expect_condition() {
+    if (!std::is_constant_evaluated()) PipeModel::current().expect_loop(site, is_unrolled ? &turns : nullptr);
+  }
+  static constexpr void expect_none() {
+    if (!std::is_constant_evaluated()) PipeModel::current().expect_loop(0);
   }
 };
 
 /// A turn of it: behind it the step and the condition follow.
 struct CountedTurn {
-  const CountedLoop& loop;
+  CountedLoop& loop;
 
-  explicit constexpr CountedTurn(const CountedLoop& of) : loop(of) { CountedLoop::expect_condition(0); }
-  constexpr ~CountedTurn() { CountedLoop::expect_condition(loop.site); }
+  explicit constexpr CountedTurn(CountedLoop& of) : loop(of) { CountedLoop::expect_none(); }
+  constexpr ~CountedTurn() { loop.expect_condition(); }
 };
 
 /// One of an enumeration, in memory.

@@ -9,14 +9,16 @@
 #include <counted/counted.h>
 #include <counted/four_words.h>
 #include <counted/lanes.h>
+#include <counted/quad_words.h>
 #include <counted_kernel.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/stages.h>
 #include <gridiron/base/work_counters.h>
+#include <gridiron/build/passes/build_work.h>
 #include <gridiron/bvh/bvh_work.h>
-#include <gridiron/engine/tree/tile_work.h>
 #include <gridiron/bvh/cache_counts.h>
 #include <gridiron/engine/grid/grid_work.h>
+#include <gridiron/engine/tree/tile_work.h>
 #include <gridiron/platform/contract.h>
 
 #include <array>
@@ -33,9 +35,10 @@
 
 namespace gridiron_counted {
 
+using gridiron::BuildWork;
 using gridiron::GridWork;
 using gridiron::InPlaceReader;
-using gridiron::TileWork;
+using gridiron::ItemClaim;
 using gridiron::kFloatMax;
 using gridiron::kInfinity;
 using gridiron::kPortableBoundaryBytes;
@@ -45,7 +48,7 @@ using gridiron::kWorkKindCount;
 using gridiron::Platform;
 using gridiron::Stage;
 using gridiron::Status;
-using gridiron::ItemClaim;
+using gridiron::TileWork;
 using gridiron::Work;
 using gridiron::WorkId;
 
@@ -96,7 +99,7 @@ using gridiron_counted::counted_bit_cast;
 #define while(...) while (::gridiron_counted::branch_at(GRIDIRON_SITE, __VA_ARGS__))
 #define switch(...) switch (::gridiron_counted::switch_at(GRIDIRON_SITE, __VA_ARGS__))
 #define for(...)                                                                                    \
-  if constexpr (::gridiron_counted::CountedLoop counted_loop(GRIDIRON_SITE, #__VA_ARGS__); false) { \
+  if constexpr (::gridiron_counted::CountedLoop counted_loop(GRIDIRON_SITE, __FILE__, #__VA_ARGS__); false) { \
   } else                                                                                            \
     for (__VA_ARGS__)                                                                               \
       if constexpr (const ::gridiron_counted::CountedTurn counted_turn(counted_loop); false) {      \

@@ -6,6 +6,7 @@
 #include <gridiron/build/grid/grid_resolution.h>
 #include <gridiron/build/grid/image_layout.h>
 #include <gridiron/build/lattice.h>
+#include <gridiron/build/mesh_quads.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/triangle_records.h>
@@ -85,10 +86,10 @@ Status survey_for_tree(const Mesh& mesh, KeptTriangles& kept) {
   for (const UVec3& t : mesh.triangles) {
     CornerQuads corners;
     if (are_inner(mesh, t)) {
-      corners = CornerQuads::inner(mesh, t);
+      corners = inner_corners_of(mesh, t);
     } else {
       if (!are_below(t, vertex_count)) return Status::kBadIndex;
-      corners = CornerQuads::of(mesh, t);
+      corners = corners_of(mesh, t);
     }
     if (corners.have_zero_area()) continue;
     ++kept.count;

@@ -22,21 +22,23 @@ template <class P>
     const CornerQuad limit(kCoordinateLimit);
     QuadBox box;
     Lanes<4>::Mask inside = limit <= limit;
-    GRIDIRON_TRY((for_each_window<Vec3, kVertexWindow>(
-        transfers, store.vertices, plan.input.vertices, first, first + (rest < kVertexItem ? rest : kVertexItem),
-        kFirstMacroTag, [&](const Vec3* vertices, std::uint64_t, std::uint32_t count) {
-          // Behind the last one are other bytes of the buffer.
-          const std::span<const Vec3> points(vertices, count);
-          for (std::uint32_t i = 0; i < count; ++i) {
-            const CornerQuad point = inner_quad(points, i);
-            box.add(point);
-            inside = inside & (Lanes<4>::abs(point) <= limit);
-          }
-          transfers.add_work(BuildWork::kVertex, count);
-          return Status::kOk;
-        })));
+    GRIDIRON_TRY((for_each_window<Vec3, kVertexWindow>(transfers, store.vertices, plan.input.vertices, first,
+                                                       first + (rest < kVertexItem ? rest : std::uint64_t{kVertexItem}),
+                                                       kFirstMacroTag,
+                                                       [&](const Vec3* vertices, std::uint64_t, std::uint32_t count) {
+                                                         // Behind the last one are other bytes of the buffer.
+                                                         const std::span<const Vec3> points(vertices, count);
+                                                         transfers.add_work(BuildWork::kVertex, count);
+                                                         for (std::uint32_t i = 0; i < count; ++i) {
+                                                           const CornerQuad point = inner_quad(points, i);
+                                                           box.add(point);
+                                                           inside = inside & (Lanes<4>::abs(point) <= limit);
+                                                         }
+                                                         return Status::kOk;
+                                                       })));
     if ((inside.bits() & 7u) != 7u) return Status::kBadVertex;
-    store.part = {box.low, box.high};
+    store.part.low = box.low;
+    store.part.high = box.high;
     GRIDIRON_TRY(transfers.put(&store.part, plan.vertex_parts.offset_by(sizeof(CornerBox) * std::uint64_t{item}),
                                sizeof(CornerBox), kFirstOutputTag));
     return transfers.wait(kFirstOutputTag);

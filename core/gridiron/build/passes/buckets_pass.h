@@ -18,7 +18,7 @@ struct BucketsStore {
   alignas(128) BuildState state;
   alignas(16) TreeKey samples[Layout::kSamples];
   TreeKey spare[Layout::kSamples];
-  std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
+  alignas(16) std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
 };
 
 /// Writes words one after another.
@@ -69,7 +69,7 @@ template <class Layout, class P>
         (for_each_window<RunPart, 8>(transfers, store.windows, plan.run_parts, 0, plan.run_count, kFirstMacroTag,
                                      [&](const RunPart* parts, std::uint64_t, std::uint32_t part_count) {
                                        for (std::uint32_t i = 0; i < part_count; ++i) {
-                                         bounds.add(parts[i].bounds);
+                                         bounds.add(parts[i].bounds());
                                          count += parts[i].count;
                                        }
                                        return Status::kOk;
@@ -80,8 +80,8 @@ template <class Layout, class P>
     store.state = {};
     store.state.triangle_count = count;
     for (int axis = 0; axis < 3; ++axis) {
-      store.state.low[axis] = all.low.v[axis];
-      store.state.high[axis] = all.high.v[axis];
+      store.state.low[axis] = lane_of(all.low, axis);
+      store.state.high[axis] = lane_of(all.high, axis);
     }
     return Status::kOk;
   };

@@ -8,8 +8,8 @@
 #include <gridiron/base/records.h>
 #include <gridiron/base/tree_records.h>
 #include <gridiron/build/corner_quad.h>
-#include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/tree/tree_curve.h>
+#include <gridiron/build/tree/tree_size.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/platform/status.h>
 
@@ -23,13 +23,15 @@ struct BuildLayout256K {
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;      ///< local memory of a core
   static constexpr std::uint32_t kCodeBudgetBytes = 60 * 1024;  ///< of it for code
   static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;  ///< of it for the stack
-  static constexpr std::uint32_t kRunTriangles = 4096;          ///< that one item codes and sorts
+  static constexpr std::uint32_t kRunTriangles = 1792;          ///< that one item codes and sorts
+  static constexpr bool kSortsRecords = true;                   ///< runs have their records in the order of codes
   static constexpr std::uint32_t kCacheLines = 512;             ///< of vertices, a power of two
   static constexpr std::uint32_t kChunkTriangles = 32;          ///< whose corners are asked for at once
-  static constexpr std::uint32_t kIndexWindow = 512;            ///< triangles
-  static constexpr std::uint32_t kSamples = 8192;               ///< codes by which buckets are chosen, at most
-  static constexpr std::uint32_t kBucketKeys = 7680;            ///< that are sorted or split in the store
-  static constexpr std::uint32_t kDigitBits = 10;               ///< of a code, sorted at once
+  static constexpr std::uint32_t kIndexWindow = 128;            ///< triangles
+  static constexpr std::uint32_t kSamples = 4096;               ///< codes by which buckets are chosen, at most
+  static constexpr std::uint32_t kBucketKeys = 7680;            ///< that are sorted in the store
+  static constexpr std::uint32_t kPieceKeys = 7680;             ///< that are split there
+  static constexpr std::uint32_t kDigitBits = 9;                ///< of a code, sorted at once
   static constexpr std::uint32_t kFewDigitBits = 6;             ///< the same for a few keys
   static constexpr std::uint32_t kTopSamples = 4096;            ///< codes that guide the splits of large ranges
   static constexpr std::uint32_t kNodeLag = 2;                  ///< nodes of a level that wait for their triangles
@@ -42,11 +44,13 @@ struct BuildLayout64K {
   static constexpr std::uint32_t kCodeBudgetBytes = 24 * 1024;
   static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024 + 256;
   static constexpr std::uint32_t kRunTriangles = 1024;
+  static constexpr bool kSortsRecords = false;
   static constexpr std::uint32_t kCacheLines = 32;
   static constexpr std::uint32_t kChunkTriangles = 16;
   static constexpr std::uint32_t kIndexWindow = 32;
   static constexpr std::uint32_t kSamples = 1024;
   static constexpr std::uint32_t kBucketKeys = 768;
+  static constexpr std::uint32_t kPieceKeys = 704;
   static constexpr std::uint32_t kDigitBits = 6;
   static constexpr std::uint32_t kFewDigitBits = 6;
   static constexpr std::uint32_t kTopSamples = 512;
@@ -87,15 +91,19 @@ static_assert(sizeof(BuildResult) == 64);
 
 /// A box: bounds of a run of vertices, or of what a child holds.
 struct CornerBox {
-  CornerQuad low, high;
+  StoredQuad low, high;
 };
 static_assert(sizeof(CornerBox) == 32);
 
 /// What coding a run of triangles has found.
 struct RunPart {
-  FourBoxes bounds;     ///< lane by lane, so that the sign of a zero is that of the first triangle that has it
-  std::uint32_t count;  ///< of triangles that have an area: keys
+  StoredQuad low[3], high[3];  ///< bounds, lane by lane, so that a zero has the sign that the first triangle gives it
+  std::uint32_t count;         ///< of triangles that have an area: keys
   std::uint32_t reserved[7];
+
+  [[nodiscard]] GRIDIRON_INLINE FourBoxes bounds() const {
+    return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+  }
 };
 static_assert(sizeof(RunPart) == 128);
 
@@ -108,8 +116,8 @@ struct BuildState {
 };
 static_assert(sizeof(BuildState) == 128);
 
-/// A sorted key. Where its code is that of more than kFewTreeTriangles, `again` is the key that stands at this place
-/// once they are coded again.
+/// A sorted key. The id of a key is the place of its triangle's record. Where its code is that of more than
+/// kFewTreeTriangles, `again` is the key that stands at this place once they are coded again.
 struct alignas(16) SortedKey {
   TreeKey key, again;
 };
@@ -258,7 +266,7 @@ template <class Layout>
   };
   plan.bucket_limit = clamped(n / 48, Layout::kBucketKeys / 16, Layout::kBucketKeys * 15 / 32);
   plan.bucket_room = 2 * shares(n, plan.bucket_limit) + 2;
-  plan.piece_limit = clamped(n / 64, Layout::kBucketKeys / 16, Layout::kBucketKeys);
+  plan.piece_limit = clamped(n / 64, Layout::kPieceKeys / 16, Layout::kPieceKeys);
   const std::uint32_t top_room = (kMaxTreeDepth - 1) * shares(n, plan.piece_limit) + 1;
   const std::uint32_t piece_room = top_room * kTreeWidth;
   plan.subtree_room = 2 * shares(n, plan.piece_limit) + 2 + shares(piece_room, kBucketPieces);

@@ -27,9 +27,9 @@ class BoxQuads {
   /// @param use  use(boxes, ids, count) for 1 to 4 triangles; if fewer than four, the last one is repeated.
   explicit BoxQuads(Use& use) : use_(use) {}
 
-  GRIDIRON_INLINE void operator()(const VertexTriangle& record) {
+  GRIDIRON_INLINE void operator()(const VertexTriangle& record, std::uint32_t id) {
     corners_[count_] = corner_quads(record);
-    ids_[count_] = record.triangle_id;
+    ids_[count_] = id;
     if (++count_ == 4) flush();
   }
   GRIDIRON_INLINE void end() {
@@ -49,12 +49,13 @@ class BoxQuads {
   std::uint32_t count_ = 0;
 };
 
-/// Calls use(boxes, ids, count) for triangles in fours. @param each_id  each_id(push) calls push(id) for all of them.
+/// Calls use(boxes, ids, count) for triangles in fours. @param kind  of work. @param each_id  each_id(push) calls
+/// push(id) for all of them.
 template <class P, class EachId, class Use>
-[[nodiscard]] Status for_each_boxes(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records,
+[[nodiscard]] Status for_each_boxes(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records, BuildWork kind,
                                     EachId&& each_id, Use&& use) {
   BoxQuads<Use> quads(use);
-  RecordTaker<P, BoxQuads<Use>> taker(transfers, ring, records, quads);
+  RecordTaker<P, BoxQuads<Use>> taker(transfers, ring, records, kind, quads);
   const auto push = [&taker](std::uint32_t id) GRIDIRON_INLINE_LAMBDA { return taker.push(id); };
   GRIDIRON_TRY(each_id(push));
   GRIDIRON_TRY(taker.end());
@@ -69,11 +70,11 @@ template <class P, class EachId>
   FourBoxes middles = FourBoxes::none();
   const auto add = [&middles, &transfers](const FourBoxes& boxes, const std::uint32_t*,
                                           std::uint32_t) GRIDIRON_INLINE_LAMBDA {
+    transfers.add_work(BuildWork::kMiddleGroup);
     const QuadRows middle = {boxes.low.x + boxes.high.x, boxes.low.y + boxes.high.y, boxes.low.z + boxes.high.z};
     middles.add({middle, middle});
-    transfers.add_work(BuildWork::kMiddleGroup);
   };
-  GRIDIRON_TRY(for_each_boxes(transfers, ring, records, each_id, add));
+  GRIDIRON_TRY(for_each_boxes(transfers, ring, records, BuildWork::kMiddleGroup, each_id, add));
   range = QuadBox::around(middles);
   return Status::kOk;
 }
@@ -84,14 +85,14 @@ template <class P, class EachId, class Use>
                                    const TreeCurve& curve, EachId&& each_id, Use&& use) {
   Status status = Status::kOk;
   const auto code = [&](const FourBoxes& boxes, const std::uint32_t* ids, std::uint32_t count) GRIDIRON_INLINE_LAMBDA {
+    transfers.add_work(BuildWork::kAgainGroup);
     std::uint32_t codes[4];
     codes_of_four(curve, boxes, codes);
-    transfers.add_work(BuildWork::kAgainGroup);
     for (std::uint32_t k = 0; k < count && status == Status::kOk; ++k) {
       status = use(codes[k], ids[k]);
     }
   };
-  GRIDIRON_TRY(for_each_boxes(transfers, ring, records, each_id, code));
+  GRIDIRON_TRY(for_each_boxes(transfers, ring, records, BuildWork::kAgainGroup, each_id, code));
   return status;
 }
 

@@ -1,5 +1,6 @@
 // Second pass of a build: codes runs of triangles, drops those without an area, and sorts each run. Triangles are also
-// written as records, so that later passes find all of one in 48 bytes.
+// written as records, so that later passes find all of one in 48 bytes; in the order of the run's codes where the store
+// holds the records of a run, so that neighbours lie side by side.
 // Memory: the pass's store. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -18,26 +19,51 @@ namespace gridiron {
 // Words of a vertex and of a line.
 inline constexpr std::uint32_t kVertexWords = kVertexBytes / 4, kLineWords = kLineBytes / 4;
 
+/// Records on their way.
+template <class Layout>
+using RecordChunks = VertexTriangle[4][Layout::kChunkTriangles];
+
+/// Records of a run that are not sorted: there is nothing to keep.
+template <class Layout, bool kSorts = Layout::kSortsRecords>
+struct RunRecords {
+  alignas(128) RecordChunks<Layout> sent;
+};
+/// Records of a run, to be sorted.
+template <class Layout>
+struct RunRecords<Layout, true> {
+  alignas(128) VertexTriangle all[Layout::kRunTriangles];
+};
+
+/// What sorting a run takes when its vertices are not needed any more.
+template <class Layout>
+struct RunSort {
+  alignas(128) TreeKey spare[Layout::kRunTriangles];
+  alignas(128) RecordChunks<Layout> sent;
+  alignas(16) std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
+};
+
 template <class Layout>
 struct CodesStore {
   static constexpr std::uint32_t kCorners = 3 * Layout::kChunkTriangles;
-  static constexpr std::uint32_t kLoneBytes = window_bytes<Vec3>(1);
+  static constexpr std::size_t kLoneBytes = window_bytes<Vec3>(1);
+  static constexpr std::size_t kLoneRoom = static_cast<std::size_t>(kCorners) * kLoneBytes;
   static constexpr std::uint32_t kPartWindow = 16;
 
   // Lines of vertices, each at its number modulo theirs, so that one that ends in the next line does so here too.
-  alignas(128) std::byte lines[Layout::kCacheLines * kLineBytes];
-  std::byte lone[2][kCorners * kLoneBytes];  // vertices that found no place there
+  union {
+    alignas(128) std::byte lines[Layout::kCacheLines][kLineBytes];
+    RunSort<Layout> sort;
+  };
+  std::byte lone[2][kLoneRoom];  // vertices that found no place there
   alignas(128) std::byte indices[2][window_bytes<UVec3>(Layout::kIndexWindow)];
-  alignas(128) VertexTriangle records[4][Layout::kChunkTriangles];
+  RunRecords<Layout> records;
   alignas(128) TreeKey keys[Layout::kRunTriangles];
-  alignas(128) TreeKey spare[Layout::kRunTriangles];
   alignas(128) std::uint32_t samples[kMostRunSamples];
   alignas(128) RunPart part;
   alignas(128) std::byte vertex_parts[2 * window_bytes<CornerBox>(kPartWindow)];
   std::uint32_t lines_held[Layout::kCacheLines];   // line + 1; 0: none
   std::uint32_t line_users[Layout::kCacheLines];   // the last chunk that asked for it
   alignas(16) std::uint32_t corners[2][kCorners];  // of a chunk's triangles: bytes from lines on
-  std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
 };
 
 /// Codes runs of triangles, one after another.
@@ -53,6 +79,8 @@ class RunCoder {
     const std::uint32_t count = rest < kRun ? static_cast<std::uint32_t>(rest) : kRun;
     const std::uint32_t chunks = (count + kChunk - 1) / kChunk;
     bounds_ = FourBoxes::none();
+    all_codes_ = Lanes<4>::Int::splat(0);
+    same_codes_ = Lanes<4>::Int::splat(~0u);
     kept_ = 0;
     // What the run before has left is not used: transfers of an item depend on nothing but the item.
     clock_ = 2;
@@ -106,7 +134,7 @@ class RunCoder {
     using L = Lanes<4>;
     for (std::uint32_t i = 0; i < 3 * count; i += 4) {
       const L::Int index = L::Int::load(indices + i);
-      const std::uint32_t rest = 3 * count - i, there = rest < 4 ? (1u << rest) - 1u : 15u;
+      const std::uint32_t rest = 3 * count - i, there = rest < 4 ? (1u << rest) - 1u : std::uint32_t{15};
       if (((index < L::Int::splat(vertex_count)).bits() & ~L::sign_bits(index) & there) != there) {
         return Status::kBadIndex;
       }
@@ -123,6 +151,7 @@ class RunCoder {
           store_.line_users[slot] = clock_;
         } else {
           GRIDIRON_TRY(ask_for(indices[i + k], chunk, i + k));
+          transfers_.charge_to(BuildWork::kCorner);
         }
       }
     }
@@ -131,28 +160,30 @@ class RunCoder {
   // Asks for the lines of a vertex that are not here.
   [[nodiscard]] GRIDIRON_OUTLINE Status ask_for(std::uint32_t index, std::uint32_t chunk, std::uint32_t corner) {
     transfers_.add_work(BuildWork::kMissedCorner);
-    const std::uint32_t first = index * kVertexWords / kLineWords;
-    const std::uint32_t last = (index * kVertexWords + kVertexWords - 1) / kLineWords;
+    const std::uint32_t word = (index << 1) + index;
+    const std::uint32_t first = word / kLineWords, last = (word + kVertexWords - 1) / kLineWords;
     // Whether this chunk or the one before needs what is in their places; and of the last place the next is not behind.
     const auto is_taken = [this](std::uint32_t line) {
       const std::uint32_t slot = line % kLines;
       return store_.lines_held[slot] != line + 1 && store_.line_users[slot] + 1 >= clock_;
     };
     if (is_taken(first) || is_taken(last) || last % kLines < first % kLines) return ask_for_lone(index, chunk, corner);
-    for (std::uint32_t line = first; line <= last; ++line) {
-      const std::uint32_t slot = line % kLines;
-      store_.line_users[slot] = clock_;
-      if (store_.lines_held[slot] == line + 1) continue;
-      store_.lines_held[slot] = line + 1;
-      const std::uint64_t begin = std::uint64_t{line} * kLineBytes;
-      const std::uint64_t rest = std::uint64_t{plan_.input.vertex_count} * kVertexBytes - begin;
-      GRIDIRON_TRY(transfers_.get(
-          store_.lines + slot * kLineBytes, plan_.input.vertices.offset_by(begin),
-          rest < kLineBytes ? round_up(static_cast<std::uint32_t>(rest), kPortableGranuleBytes) : kLineBytes,
-          corner_tag(chunk)));
-    }
-    store_.corners[chunk % 2][corner] = index * kVertexWords % (kLines * kLineWords) * 4;
-    return Status::kOk;
+    store_.corners[chunk % 2][corner] = word % (kLines * kLineWords) * 4;
+    GRIDIRON_TRY(get_line(first, chunk));
+    return last == first ? Status::kOk : get_line(last, chunk);
+  }
+  // Gets a line of vertices, if it is not here.
+  [[nodiscard]] GRIDIRON_INLINE Status get_line(std::uint32_t line, std::uint32_t chunk) {
+    const std::uint32_t slot = line % kLines;
+    store_.line_users[slot] = clock_;
+    if (store_.lines_held[slot] == line + 1) return Status::kOk;
+    store_.lines_held[slot] = line + 1;
+    const std::uint64_t begin = std::uint64_t{line} * kLineBytes;
+    const std::uint64_t rest = plan_.input.vertex_count * std::uint64_t{kVertexBytes} - begin;
+    const std::uint32_t bytes = rest < kLineBytes
+                                    ? round_up(static_cast<std::uint32_t>(rest), std::uint32_t{kPortableGranuleBytes})
+                                    : std::uint32_t{kLineBytes};
+    return transfers_.get(store_.lines[slot], plan_.input.vertices.offset_by(begin), bytes, corner_tag(chunk));
   }
   [[nodiscard]] static std::uint8_t corner_tag(std::uint32_t chunk) {
     return static_cast<std::uint8_t>(kCornerTag + chunk % 2);
@@ -167,31 +198,64 @@ class RunCoder {
 
   // Makes records and keys of a chunk's triangles.
   [[nodiscard]] Status take(std::uint64_t first, std::uint32_t chunk, std::uint32_t count) {
-    const auto record_tag = static_cast<std::uint8_t>(kFirstOutputTag + chunk % 4);
     GRIDIRON_TRY(transfers_.wait(corner_tag(chunk)));
-    GRIDIRON_TRY(transfers_.wait(record_tag));
-    VertexTriangle* const records = store_.records[chunk % 4];
     const std::uint64_t chunk_first = first + chunk * kChunk;
+    VertexTriangle* records = nullptr;
+    std::uint32_t key_first = chunk * kChunk;  // ids of keys: places in the run, or of records
+    if constexpr (Layout::kSortsRecords) {
+      records = store_.records.all + chunk * kChunk;
+    } else {
+      records = store_.records.sent[chunk % 4];
+      key_first = static_cast<std::uint32_t>(chunk_first);
+      GRIDIRON_TRY(transfers_.wait(record_tag(chunk)));
+    }
     const std::uint32_t* const places = store_.corners[chunk % 2];
-    const std::uint32_t kept_before = kept_;
+    transfers_.add_work(BuildWork::kCodedGroup, (count + 3) / 4);
     for (std::uint32_t i = 0; i < count; i += 4) {
       CornerQuads corners[4];
       for (std::uint32_t k = 0; k < 4; ++k) {
         const std::uint32_t j = i + k < count ? i + k : count - 1;
         corners[k] = {corner_at(places[3 * j]), corner_at(places[3 * j + 1]), corner_at(places[3 * j + 2])};
       }
-      const std::uint32_t there = count - i < 4 ? (1u << (count - i)) - 1u : 15u;
+      const std::uint32_t there = count - i < 4 ? (1u << (count - i)) - 1u : std::uint32_t{15};
       const FourTriangles triangles = FourTriangles::of(corners);
       const CornerQuad areas = areas_of(triangles);
       for (std::uint32_t k = 0; k < 4 && i + k < count; ++k) {
-        write_record(corners[k], static_cast<std::uint32_t>(chunk_first) + i + k, areas.v[k], records[i + k]);
+        write_record(corners[k], static_cast<std::uint32_t>(chunk_first) + i + k, lane_of(areas, static_cast<int>(k)),
+                     records[i + k]);
       }
-      take_four(triangles, static_cast<std::uint32_t>(chunk_first) + i, there);
+      take_four(triangles, key_first + i, there);
     }
-    transfers_.add_work(BuildWork::kCodedGroup, (count + 3) / 4);
-    transfers_.add_work(BuildWork::kDroppedTriangle, count - (kept_ - kept_before));
-    return transfers_.put(records, plan_.raw_records.offset_by(chunk_first * sizeof(VertexTriangle)),
-                          count * static_cast<std::uint32_t>(sizeof(VertexTriangle)), record_tag);
+    if constexpr (Layout::kSortsRecords) return Status::kOk;
+    return put_records(records, chunk_first, count, record_tag(chunk));
+  }
+  [[nodiscard]] Status put_records(const VertexTriangle* records, std::uint64_t place, std::uint32_t count,
+                                   std::uint8_t tag) {
+    return transfers_.put(records, plan_.raw_records.offset_by(place * sizeof(VertexTriangle)),
+                          count * static_cast<std::uint32_t>(sizeof(VertexTriangle)), tag);
+  }
+  [[nodiscard]] static std::uint8_t record_tag(std::uint32_t chunk) {
+    return static_cast<std::uint8_t>(kFirstOutputTag + chunk % 4);
+  }
+  // Writes the records of a sorted run.
+  [[nodiscard]] Status send_records(std::uint32_t run, const TreeKey* sorted) {
+    for (std::uint32_t chunk = 0; chunk * kChunk < kept_; ++chunk) {
+      const std::uint32_t begin = chunk * kChunk, count = kept_ - begin < kChunk ? kept_ - begin : kChunk;
+      VertexTriangle* const sent = store_.sort.sent[chunk % 4];
+      GRIDIRON_TRY(transfers_.wait(record_tag(chunk)));
+      transfers_.add_work(BuildWork::kSortedRecord, count);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        using Int = Lanes<4>::Int;
+        const auto* const from = reinterpret_cast<const std::uint32_t*>(store_.records.all + sorted[begin + i].id());
+        auto* const to = reinterpret_cast<std::uint32_t*>(sent + i);
+        const Int first = Int::load(from), second = Int::load(from + 4), third = Int::load(from + 8);
+        first.store(to);
+        second.store(to + 4);
+        third.store(to + 8);
+      }
+      GRIDIRON_TRY(put_records(sent, std::uint64_t{run} * kRun + begin, count, record_tag(chunk)));
+    }
+    return Status::kOk;
   }
   [[nodiscard]] GRIDIRON_INLINE CornerQuad corner_at(std::uint32_t place) const {
     // Not the word behind it, which may be under way.
@@ -208,7 +272,7 @@ class RunCoder {
     using L = Lanes<4>;
     auto* const words = reinterpret_cast<float*>(&record);
     const CornerQuad a = corners.a, b = corners.b, c = corners.c;
-    const L::Int end = {{0, std::bit_cast<std::int32_t>(area), 0, static_cast<std::int32_t>(id)}};
+    const L::Int end = words_quad(0, std::bit_cast<std::uint32_t>(area), 0, id);
     const L::Float cz = L::shuffle_quads<2, 3, 3, 3>(c);  // the last lane is 0
     L::shuffle_quads<0, 1, 2, 4>(a, b).store(words);
     L::shuffle_quads<1, 2, 4, 5>(b, c).store(words + 4);
@@ -218,6 +282,8 @@ class RunCoder {
     const std::uint32_t kept = triangles.with_area() & there;
     FourBoxes boxes = triangles.boxes();
     const Lanes<4>::Int codes = curve_.codes_of(boxes);
+    all_codes_ = all_codes_ | codes;
+    same_codes_ = same_codes_ & codes;
     if (kept == 15u) {
       TreeKey::store_four(codes, first, store_.keys + kept_);
       kept_ += 4;
@@ -235,13 +301,14 @@ class RunCoder {
   // Sorts the run and sends keys, samples and bounds on their way.
   [[nodiscard]] Status finish(std::uint32_t run) {
     std::uint32_t all = 0, same = ~0u;
-    for (std::uint32_t i = 0; i < kept_; ++i) {
-      all |= store_.keys[i].code();
-      same &= store_.keys[i].code();
+    for (int lane = 0; lane < 4; ++lane) {
+      all |= static_cast<std::uint32_t>(all_codes_[lane]);
+      same &= static_cast<std::uint32_t>(same_codes_[lane]);
     }
-    const bool is_in_spare = sort_run<Layout::kDigitBits, 1>(
-        store_.keys, store_.spare, kept_, static_cast<std::uint32_t>(width_of(all & ~same)), store_.counts, transfers_);
-    const TreeKey* const sorted = is_in_spare ? store_.spare : store_.keys;
+    const bool is_in_spare = sort_run<Layout::kDigitBits, 1>(store_.keys, store_.sort.spare, kept_,
+                                                             static_cast<std::uint32_t>(width_of(all & ~same)),
+                                                             store_.sort.counts, transfers_);
+    const TreeKey* const sorted = is_in_spare ? store_.sort.spare : store_.keys;
     if (kept_ > 0) {
       GRIDIRON_TRY(transfers_.put(sorted, plan_.run_keys.offset_by(std::uint64_t{run} * kRun * sizeof(TreeKey)),
                                   round_up(kept_ * static_cast<std::uint32_t>(sizeof(TreeKey)), kPortableGranuleBytes),
@@ -259,8 +326,12 @@ class RunCoder {
       GRIDIRON_TRY(transfers_.put(samples, plan_.samples.offset_by(run / plan_.sampled_runs * bytes),
                                   static_cast<std::uint32_t>(bytes), kPartTag));
     }
+    if constexpr (Layout::kSortsRecords) GRIDIRON_TRY(send_records(run, sorted));
     RunPart& part = store_.part;
-    part = {bounds_, kept_, {}};
+    part.low[0] = bounds_.low.x, part.low[1] = bounds_.low.y, part.low[2] = bounds_.low.z;
+    part.high[0] = bounds_.high.x, part.high[1] = bounds_.high.y, part.high[2] = bounds_.high.z;
+    part.count = kept_;
+    for (std::uint32_t& word : part.reserved) word = 0;
     return transfers_.put(&part, plan_.run_parts.offset_by(run * sizeof(RunPart)), sizeof(RunPart), kPartTag);
   }
 
@@ -268,7 +339,8 @@ class RunCoder {
   CodesStore<Layout>& store_;
   const BuildPlan& plan_;
   TreeCurve curve_;
-  FourBoxes bounds_;
+  FourBoxes bounds_ = FourBoxes::none();
+  Lanes<4>::Int all_codes_ = Lanes<4>::Int::splat(0), same_codes_ = all_codes_;  // bits that any, and that all have
   std::uint32_t kept_ = 0;
   std::uint32_t clock_ = 2;  // chunks, plus two
 };

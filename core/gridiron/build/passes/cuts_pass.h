@@ -48,18 +48,18 @@ template <class Layout, class P>
             [&](const TreeKey* keys, std::uint64_t at, std::uint32_t n) {
               const auto before = static_cast<std::uint32_t>(at - base);
               const std::uint32_t last = keys[n - 1].code();
-              const std::uint32_t next_before = next;
+              transfers.charge_to(BuildWork::kSearchStep);
               // At most all splitters, in all windows of a run together.
               for (; next < count && splitters[next] <= last; ++next) {
                 std::uint32_t low = 0;
                 for (std::uint32_t size = n; size > 0;) {
                   const std::uint32_t half = (size + 1) / 2;
+                  transfers.add_work(BuildWork::kSearchStep);
                   low += keys[low + half - 1].code() < splitters[next] ? half : std::uint32_t{0};
                   size -= half;
                 }
                 store.cuts[next][k] = before + low;
               }
-              transfers.add_work(BuildWork::kCut, next - next_before);
               return Status::kOk;
             })));
         for (; next < count; ++next) store.cuts[next][k] = key_count;

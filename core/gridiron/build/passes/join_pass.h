@@ -125,7 +125,7 @@ class TreeJoiner {
         }
         if (top_begin >= heads.elements()[i].end) continue;
         GRIDIRON_TRY(number_tops(heads.elements()[i].end));
-        top_begin = next_top < store_.top_state.top_count ? store_.top.begin : ~0u;
+        top_begin = next_top < store_.top_state.top_count ? store_.top.begin : std::uint32_t{~0u};
       }
       return transfers_.put(store_.firsts, plan_.level_firsts.offset_by(first * sizeof(LevelCounts)),
                             count * static_cast<std::uint32_t>(sizeof(LevelCounts)), kFirstOutputTag + 1);
@@ -173,8 +173,8 @@ class TreeJoiner {
       node.children[i] = {0};
       if (i >= from.child_count) continue;
       const PieceResult& result = store_.results[i];
-      boxes[i] = {quad_of({result.low[0], result.low[1], result.low[2]}),
-                  quad_of({result.high[0], result.high[1], result.high[2]})};
+      // The last lanes have other words, which nobody asks for.
+      boxes[i] = {CornerQuad::load(result.low), CornerQuad::load(result.high)};
       bool is_leaf = false;
       if ((from.children[i] & TopNode::kTop) != 0) {
         node.children[i] = TreeChild::node(result.number);
@@ -197,8 +197,8 @@ class TreeJoiner {
     const QuadBox box = QuadBox::of_node(node);
     PieceResult& own = store_.result;
     for (int axis = 0; axis < 3; ++axis) {
-      own.low[axis] = box.low.v[axis];
-      own.high[axis] = box.high.v[axis];
+      own.low[axis] = lane_of(box.low, axis);
+      own.high[axis] = lane_of(box.high, axis);
     }
     own.area = total;
     own.number = from.number;

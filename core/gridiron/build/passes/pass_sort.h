@@ -3,7 +3,7 @@
 #pragma once
 
 #include <gridiron/base/lanes.h>
-#include <gridiron/build/passes/build_work.h>
+#include <gridiron/build/passes/build_transfers.h>
 #include <gridiron/build/tree/tree_curve.h>
 #include <gridiron/dma/transfers.h>
 
@@ -11,51 +11,55 @@
 
 namespace gridiron {
 
-/// Words of counts that sort_run() needs.
+/// A count of keys fills a quadword: a store writes no less, so a narrower one would have to be put into what is there.
+inline constexpr std::uint32_t kCountWords = 4;
+/// Digits that are sorted by at once.
+inline constexpr std::uint32_t kDigitsAtOnce = 2;
+/// Words of counts that sort_run() needs, aligned to 16 bytes.
 template <std::uint32_t kDigitBits>
-inline constexpr std::uint32_t kSortCounts = ((kTreeCodeBits + kDigitBits - 1) / kDigitBits) << kDigitBits;
+inline constexpr std::uint32_t kSortCounts = (kDigitsAtOnce * kCountWords) << kDigitBits;
 
-/// Moves keys to where one digit of their codes belongs.
-/// @param places  by value of the digit, of the first key that has it; ends at the next one's.
-template <std::uint32_t kValues, std::uint32_t kStride>
-GRIDIRON_INLINE void move_by_digit(const TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t shift,
-                                   std::uint32_t* places) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const TreeKey key = from[i * kStride];
-    to[places[(key.code() >> shift) % kValues]++ * kStride] = key;
-  }
-}
-
-/// Puts the number of keys before each value in the place of that of keys that have it.
-template <std::uint32_t kValues>
-GRIDIRON_INLINE void sum_counts(std::uint32_t* counts) {
-  std::uint32_t sum = 0;
-  for (std::uint32_t i = 0; i < kValues; ++i) {
-    const std::uint32_t here = counts[i];
-    counts[i] = sum;
-    sum += here;
-  }
-}
-
-/// Sorts keys by some bits of their codes, digit by digit from the lowest on.
+/// Sorts keys by one or two digits of their codes, the lower one first.
 /// @returns whether the sorted keys are in `to`, else in `from`.
-template <std::uint32_t kDigitBits, std::uint32_t kStride>
+template <std::uint32_t kDigitBits, std::uint32_t kStride, class P>
 GRIDIRON_INLINE bool sort_by_digits(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t shift,
-                                    std::uint32_t digits, std::uint32_t* counts) {
-  constexpr std::uint32_t kValues = 1u << kDigitBits;
-  for (std::uint32_t i = 0; i < digits * kValues; ++i) counts[i] = 0;
+                                    std::uint32_t digits, std::uint32_t* counts, BuildTransfers<P>& transfers) {
+  using Int = Lanes<4>::Int;
+  static constexpr std::uint32_t kValues = 1u << kDigitBits;
+  transfers.add_work(BuildWork::kSortCount, digits * kValues);
+  for (std::uint32_t i = 0; i < digits * kValues; ++i) Int::splat(0).store(counts + i * kCountWords);
+  transfers.add_work(BuildWork::kMovedKey, digits * count);
+  const auto count_one = [counts](std::uint32_t value) GRIDIRON_INLINE_LAMBDA {
+    std::uint32_t* const place = counts + value * kCountWords;
+    (Int::load(place) + Int::splat(1)).store(place);
+  };
   for (std::uint32_t i = 0; i < count; ++i) {
-    std::uint32_t code = from[i * kStride].code() >> shift;
-    for (std::uint32_t digit = 0; digit < digits; ++digit, code >>= kDigitBits) {
-      ++counts[digit * kValues + code % kValues];
-    }
+    const std::uint32_t code = from[i * kStride].code() >> shift;
+    count_one(code % kValues);
+    if (digits > 1) count_one(kValues + (code >> kDigitBits) % kValues);
   }
   for (std::uint32_t digit = 0; digit < digits; ++digit) {
-    sum_counts<kValues>(counts + digit * kValues);
-    move_by_digit<kValues, kStride>(from, to, count, shift + digit * kDigitBits, counts + digit * kValues);
+    transfers.charge_to(BuildWork::kSortCount);
+    // The number of keys before each value in the place of that of keys that have it.
+    std::uint32_t* const places = counts + digit * kValues * kCountWords;
+    Int sum = Int::splat(0);
+    for (std::uint32_t i = 0; i < kValues; ++i) {
+      const Int here = Int::load(places + i * kCountWords);
+      sum.store(places + i * kCountWords);
+      sum = sum + here;
+    }
+    transfers.charge_to(BuildWork::kMovedKey);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const TreeKey key = from[i * kStride];
+      std::uint32_t* const next = places + (key.code() >> shift) % kValues * kCountWords;
+      const Int place = Int::load(next);
+      (place + Int::splat(1)).store(next);
+      to[static_cast<std::uint32_t>(place[0]) * kStride] = key;
+    }
     TreeKey* const sorted = to;
     to = from;
     from = sorted;
+    shift += kDigitBits;
   }
   return digits % 2 != 0;
 }
@@ -92,21 +96,27 @@ GRIDIRON_INLINE bool sort_by_exchanges(TreeKey* keys, std::uint32_t count, std::
 template <std::uint32_t kDigitBits, std::uint32_t kStride, class P>
 bool sort_run(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t bits, std::uint32_t* counts,
               BuildTransfers<P>& transfers) {
-  constexpr std::uint32_t kValues = 1u << kDigitBits;
-  const std::uint32_t digits = (bits + kDigitBits - 1) / kDigitBits, tried = digits < 2 ? digits : std::uint32_t{2};
+  const std::uint32_t digits = (bits + kDigitBits - 1) / kDigitBits,
+                      tried = digits < kDigitsAtOnce ? digits : kDigitsAtOnce;
   const std::uint32_t shift = bits > tried * kDigitBits ? bits - tried * kDigitBits : std::uint32_t{0};
-  transfers.add_work(BuildWork::kSortCount, tried * kValues);
-  transfers.add_work(BuildWork::kMovedKey, tried * count);
-  const bool is_in_to = sort_by_digits<kDigitBits, kStride>(from, to, count, shift, tried, counts);
+  const bool is_in_to = sort_by_digits<kDigitBits, kStride>(from, to, count, shift, tried, counts, transfers);
   if (shift == 0) return is_in_to;
   TreeKey* const keys = is_in_to ? to : from;
   transfers.add_work(BuildWork::kExchangedKey, count);
   if (sort_by_exchanges<kStride>(keys, count, 2 * count)) return is_in_to;
   // Equal ones still have their order.
-  transfers.add_work(BuildWork::kSortCount, digits * kValues);
-  transfers.add_work(BuildWork::kMovedKey, digits * count);
-  const bool is_in_other = sort_by_digits<kDigitBits, kStride>(keys, is_in_to ? from : to, count, 0, digits, counts);
-  return is_in_other != is_in_to;
+  TreeKey* spare = is_in_to ? from : to;
+  TreeKey* sorted = keys;
+  for (std::uint32_t done = 0; done < digits; done += kDigitsAtOnce) {
+    const std::uint32_t left = digits - done;
+    if (sort_by_digits<kDigitBits, kStride>(sorted, spare, count, done * kDigitBits,
+                                            left < kDigitsAtOnce ? left : kDigitsAtOnce, counts, transfers)) {
+      TreeKey* const other = sorted;
+      sorted = spare;
+      spare = other;
+    }
+  }
+  return sorted == to;
 }
 
 }  // namespace gridiron

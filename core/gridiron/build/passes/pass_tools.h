@@ -5,8 +5,9 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/base/tree_records.h>
-#include <gridiron/build/passes/build_work.h>
+#include <gridiron/build/passes/build_transfers.h>
 #include <gridiron/build/tree/tree_curve.h>
+#include <gridiron/build/tree/tree_splits.h>
 #include <gridiron/dma/transfers.h>
 #include <gridiron/platform/contract.h>
 
@@ -17,8 +18,9 @@ namespace gridiron {
 
 /// Bytes of a buffer for so many elements at any place of an array; a multiple of kPortableCongruenceBytes.
 template <class Element>
-[[nodiscard]] constexpr std::uint32_t window_bytes(std::uint32_t count) {
-  return round_up(count * static_cast<std::uint32_t>(sizeof(Element)) + 48, kPortableCongruenceBytes);
+[[nodiscard]] constexpr std::size_t window_bytes(std::uint32_t count) {
+  return static_cast<std::size_t>(
+      round_up(count * static_cast<std::uint32_t>(sizeof(Element)) + 48, kPortableCongruenceBytes));
 }
 
 /// Elements [first, first + count) of an array in main memory, and a buffer for them that is aligned to
@@ -61,7 +63,7 @@ template <class Element, std::uint32_t kCount, class P, class Visit>
 [[nodiscard]] GRIDIRON_INLINE Status for_each_window(BuildTransfers<P>& transfers, std::byte* buffers,
                                                      MainAddress array, std::uint64_t first, std::uint64_t end,
                                                      std::uint8_t tag, Visit&& visit) {
-  constexpr std::uint32_t kBytes = window_bytes<Element>(kCount);
+  static constexpr std::size_t kBytes = window_bytes<Element>(kCount);
   const auto count_at = [end](std::uint64_t at) {
     return end - at < kCount ? static_cast<std::uint32_t>(end - at) : kCount;
   };
@@ -97,17 +99,19 @@ template <class P>
   return Status::kOk;
 }
 
-/// Counts the work of splitting a range into parts: a search for each, over half of the keys each time; where not all
-/// parts are leaves at once, all that are there are weighed for each.
-template <class P>
-void count_split(BuildTransfers<P>& transfers, std::uint32_t begin, std::uint32_t end, std::uint32_t parts,
-                 std::uint32_t leaf_triangles) {
-  const std::uint32_t size = end - begin;
-  const auto steps = static_cast<std::uint32_t>(width_of(size));
-  transfers.add_work(BuildWork::kSearchStep, parts * (steps > 2 ? steps - 2 : std::uint32_t{1}));
-  if (size <= kTreeWidth / 2 * leaf_triangles) return;
-  transfers.add_work(BuildWork::kPart, parts);
-  transfers.add_work(BuildWork::kWeighedPart, parts * (parts + 1) / 2);
+/// The kind of a step of TreeSplits.
+[[nodiscard]] GRIDIRON_INLINE constexpr BuildWork kind_of(SplitWork work) {
+  switch (work) {
+    case SplitWork::kPart:
+      return BuildWork::kPart;
+    case SplitWork::kWeighedPart:
+      return BuildWork::kWeighedPart;
+    case SplitWork::kSearchStep:
+      return BuildWork::kSearchStep;
+    case SplitWork::kLeaf:
+      break;
+  }
+  return BuildWork::kLeaf;
 }
 
 /// Calls work(item) for each item that this core claims. @param item_count  of the pass.

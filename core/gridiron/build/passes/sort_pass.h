@@ -24,7 +24,7 @@ struct SortStore {
   alignas(128) std::byte scanned[window_bytes<SortedKey>(FarBuffers::kKeys)];
   RecordRing ring;
   std::uint32_t ids[Layout::kBucketKeys];  // of crowded triangles, in their first order
-  std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
+  alignas(16) std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
 };
 
 /// Sorts buckets, one after another.
@@ -70,6 +70,7 @@ class BucketSorter {
 
  private:
   static constexpr std::uint32_t kRoom = Layout::kBucketKeys;
+  static constexpr std::uint32_t kPieceWork = 16;  // keys that take as long as beginning a piece of a run
   static constexpr std::uint32_t kPieces = SortStore<Layout>::kPieces, kPieceKeys = SortStore<Layout>::kPieceKeys;
 
   // Calls use(begins, ends, first run, count) for all runs of a bucket.
@@ -129,8 +130,16 @@ class BucketSorter {
                          GRIDIRON_TRY(transfers_.wait(tag_of(taken)));
                          const TreeKey* const keys = window_of(taken).elements();
                          const std::uint32_t size = sizes[taken % kPieces];
-                         transfers_.add_work(BuildWork::kGatheredKey, size);
-                         for (std::uint32_t i = 0; i < size; ++i) GRIDIRON_TRY(visit(keys[i]));
+                         transfers_.add_work(BuildWork::kGatheredKey, size + kPieceWork);
+                         const auto place = static_cast<std::uint32_t>(firsts[taken % kPieces]);
+                         for (std::uint32_t i = 0; i < size; ++i) {
+                           // Of sorted records the place is that of the key in its run.
+                           if constexpr (Layout::kSortsRecords) {
+                             GRIDIRON_TRY(visit(TreeKey::of(keys[i].code(), place + i)));
+                           } else {
+                             GRIDIRON_TRY(visit(keys[i]));
+                           }
+                         }
                          ++taken;
                        }
                        return Status::kOk;

@@ -46,7 +46,7 @@ struct SubtreesStore {
   };
   static constexpr std::uint32_t kEnds = ~0u;
 
-  alignas(128) SortedKey keys[Layout::kBucketKeys + 1];
+  alignas(128) SortedKey keys[Layout::kPieceKeys + 1];
   alignas(128) OpenNode nodes[kMaxTreeDepth * Layout::kNodeLag];
   alignas(128) TreeNode sent_nodes[kNodes];
   alignas(128) std::byte records[2][window_bytes<VertexTriangle>(kRecords)];
@@ -59,7 +59,7 @@ struct SubtreesStore {
   RecordRing ring;
   Level levels[kMaxTreeDepth];
   Event events[kEvents];
-  std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
+  alignas(16) std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
 };
 
 /// Makes subtrees of a bucket's pieces.
@@ -91,6 +91,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     next_record_ = record_sent_ = begin_;
     // Tags of an item depend on nothing but the item.
     record_side_ = first_event_ = next_node_ = next_result_ = 0;
+    next_place_ = sent_window().elements();
     stream_.reset();
     const auto add_all = [&](const Piece* pieces, std::uint64_t first, std::uint32_t count) -> Status {
       for (std::uint32_t i = 0; i < count; ++i) GRIDIRON_TRY(add(pieces[i], static_cast<std::uint32_t>(first) + i));
@@ -119,6 +120,9 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
   // --- Splits -----------------------------------------------------------------------------------------------------
 
   [[nodiscard]] SubtreeBucket* bucket_place(std::uint32_t bucket) { return &store_.bucket[bucket & 1u]; }
+  GRIDIRON_INLINE void count_work(SplitWork work, std::uint32_t amount) const {
+    transfers_.add_work(kind_of(work), amount);
+  }
   [[nodiscard]] std::uint32_t whole_count() const { return store_.state.triangle_count; }
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t code_of(std::uint32_t i) const { return keys_[i - begin_].key.code(); }
   [[nodiscard]] std::uint32_t middle_of(const TreeRange& part) const {
@@ -171,7 +175,6 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     OpenNode& node = store_.nodes[slot];
     while (node.is_open) GRIDIRON_TRY(take_event());
     GRIDIRON_TRY(this->split_range(begin, end, depth_, level.ranges, level.count));
-    count_split(transfers_, begin, end, level.count, this->leaf_triangles());
     level.next = 0;
     level.slot = slot;
     node.count = level.count;
@@ -236,15 +239,16 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
   [[nodiscard]] Status deliver(std::uint32_t node, std::uint32_t child, const QuadBox& box, float area,
                                std::uint32_t number) {
     if (node != Store::kNoParent) {
-      store_.nodes[node].boxes[child] = {box.low, box.high};
+      store_.nodes[node].boxes[child].low = box.low;
+      store_.nodes[node].boxes[child].high = box.high;
       store_.nodes[node].areas[child] = area;
       return Status::kOk;
     }
     if (next_result_ % Store::kResults == 0) GRIDIRON_TRY(transfers_.wait(kResultTag));
     PieceResult& result = store_.results[next_result_++ % Store::kResults];
     for (int axis = 0; axis < 3; ++axis) {
-      result.low[axis] = box.low.v[axis];
-      result.high[axis] = box.high.v[axis];
+      result.low[axis] = lane_of(box.low, axis);
+      result.high[axis] = lane_of(box.high, axis);
     }
     result.area = area;
     result.number = number;
@@ -260,11 +264,15 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     GRIDIRON_TRY(transfers_.wait(tag));
     TreeNode& node = store_.sent_nodes[place];
     for (std::uint32_t i = open_node.count; i < kTreeWidth; ++i) {
-      open_node.boxes[i] = {CornerQuad(kFloatMax), CornerQuad(-kFloatMax)};
+      open_node.boxes[i].low = CornerQuad(kFloatMax);
+      open_node.boxes[i].high = CornerQuad(-kFloatMax);
       open_node.children[i] = {0};
     }
     store_child_boxes(open_node.boxes, node);
-    __builtin_memcpy(node.children, open_node.children, sizeof node.children);
+    const auto* const children = reinterpret_cast<const std::uint32_t*>(open_node.children);
+    for (std::uint32_t i = 0; i < kTreeWidth; i += 4) {
+      Lanes<4>::Int::load(children + i).store(reinterpret_cast<std::uint32_t*>(node.children) + i);
+    }
     node.order = kTreeOrderByNumber;
     float total = 0.0f;
     if (plan_.input.order == TreeOrder::kForAnyHit) {
@@ -294,12 +302,13 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
   }
   [[nodiscard]] GRIDIRON_INLINE Status write_record(const VertexTriangle& record) {
     const auto* const from = reinterpret_cast<const std::uint32_t*>(&record);
-    auto* const to = reinterpret_cast<std::uint32_t*>(sent_window().elements() + (next_record_ - record_sent_));
+    auto* const to = reinterpret_cast<std::uint32_t*>(next_place_);
     for (std::uint32_t i = 0; i < 8; i += 4) Lanes<4>::Int::load(from + i).store(to + i);
     // Without the area.
-    const Lanes<4>::Int kept = {{-1, 0, 0, -1}};
+    const Lanes<4>::Int kept = words_quad(~0u, 0, 0, ~0u);
     (Lanes<4>::Int::load(from + 8) & kept).store(to + 8);
     ++next_record_;
+    ++next_place_;
     return next_record_ - record_sent_ == Store::kRecords ? send_records() : Status::kOk;
   }
   [[nodiscard]] Status send_records() {
@@ -308,6 +317,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
     GRIDIRON_TRY(sent_window().put(transfers_, count, static_cast<std::uint8_t>(kRecordTag + record_side_)));
     record_sent_ = next_record_;
     record_side_ = 1 - record_side_;
+    next_place_ = sent_window().elements();
     return transfers_.wait(static_cast<std::uint8_t>(kRecordTag + record_side_));
   }
 
@@ -325,6 +335,7 @@ class SubtreeBuilder : private TreeSplits<SubtreeBuilder<Layout, P>> {
   std::uint32_t next_node_ = 0, next_result_ = 0;
   std::uint64_t raw_node_ = 0;
   std::uint32_t next_record_ = 0, record_sent_ = 0, record_side_ = 0;
+  VertexTriangle* next_place_ = nullptr;  // of the next record, among those that are sent at once
 };
 
 /// Writes records, raw_nodes, piece_results and level_counts. Items: buckets of pieces.

@@ -33,7 +33,7 @@ struct TopStore {
   Level levels[kMaxTreeDepth];
   std::uint32_t line_held[kLines];             // line + 1; 0: none
   std::uint32_t samples[Layout::kTopSamples];  // codes of keys at equal distances
-  std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
+  alignas(16) std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
 };
 
 /// Splits ranges of keys that lie in main memory.
@@ -79,7 +79,6 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     Level& level = store_.levels[depth_++];
     GRIDIRON_TRY(this->split_range(begin, end, depth_, level.ranges, level.count));
     GRIDIRON_TRY(status_);
-    count_split(transfers_, begin, end, level.count, this->leaf_triangles());
     level.next = 0;
     level.number = top_count_++;
     level.node = {};
@@ -104,7 +103,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
       return add_piece(range.begin, range.end, 0);
     }
     // What is coded again in the store is not split here.
-    if (size <= plan_.piece_limit || (range.level == 0 && size <= Layout::kBucketKeys)) {
+    if (size <= plan_.piece_limit || (range.level == 0 && size <= Layout::kPieceKeys)) {
       child = piece_count_;
       return add_piece(range.begin, range.end, depth_ + 1);
     }
@@ -119,13 +118,13 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     if (bucket_.piece_count == 0) bucket_ = {piece_count_, 0, begin, end};
     ++bucket_.piece_count;
     bucket_.end = end;
-    constexpr std::uint32_t kPieces = TopStore<Layout>::kPieces;
+    static constexpr std::uint32_t kPieces = TopStore<Layout>::kPieces;
     store_.pieces[piece_count_ / kPieces % 2][piece_count_ % kPieces] = {begin, end, depth, bucket_count_};
     ++piece_count_;
     return piece_count_ % kPieces == 0 ? send_pieces() : Status::kOk;
   }
   [[nodiscard]] Status end_bucket() {
-    constexpr std::uint32_t kBuckets = TopStore<Layout>::kBuckets;
+    static constexpr std::uint32_t kBuckets = TopStore<Layout>::kBuckets;
     store_.buckets[bucket_count_ / kBuckets % 2][bucket_count_ % kBuckets] = bucket_;
     bucket_.piece_count = 0;
     ++bucket_count_;
@@ -138,9 +137,10 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     return send(store_.buckets, plan_.buckets, bucket_count_, buckets_sent_, kBucketTag);
   }
   // Sends what has been made since the last time from one of two buffers, and waits for the other one.
-  template <class Element, std::uint32_t kCount>
-  [[nodiscard]] Status send(Element (&buffers)[2][kCount], MainAddress array, std::uint32_t count, std::uint32_t& sent,
+  template <class Element, std::size_t kSize>
+  [[nodiscard]] Status send(Element (&buffers)[2][kSize], MainAddress array, std::uint32_t count, std::uint32_t& sent,
                             std::uint8_t tag) {
+    static constexpr auto kCount = static_cast<std::uint32_t>(kSize);
     if (count == sent) return Status::kOk;
     const std::uint32_t side = sent / kCount % 2;
     const std::uint32_t bytes = (count - sent) * static_cast<std::uint32_t>(sizeof(Element));
@@ -152,12 +152,15 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
 
   // --- Keys -------------------------------------------------------------------------------------------------------
 
+  GRIDIRON_INLINE void count_work(SplitWork work, std::uint32_t amount) const {
+    transfers_.add_work(kind_of(work), amount);
+  }
   [[nodiscard]] std::uint32_t whole_count() const { return store_.state.triangle_count; }
 
   // A key, which may have to be fetched. Errors: status_.
   [[nodiscard]] std::uint32_t code_of(std::uint32_t i) const { return key_at(i).key.code(); }
   [[nodiscard]] SortedKey key_at(std::uint32_t i) const {
-    constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys;
+    static constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys;
     const std::uint32_t line = i / kLineKeys, slot = line % TopStore<Layout>::kLines;
     if (store_.line_held[slot] != line + 1) fetch_line(line);
     return store_.lines[slot][i % kLineKeys];
@@ -168,7 +171,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     if (status != Status::kOk) status_ = status;
   }
   [[nodiscard]] Status get_line(std::uint32_t line) const {
-    constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys, kLines = TopStore<Layout>::kLines;
+    static constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys, kLines = TopStore<Layout>::kLines;
     const std::uint32_t left = whole_count() - line * kLineKeys;
     store_.line_held[line % kLines] = line + 1;
     return transfers_.get(
@@ -179,7 +182,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
   // Keys, so close to one another that they are fetched at once.
   static constexpr std::uint32_t kGap = TopStore<Layout>::kLines / 2 * TopStore<Layout>::kLineKeys;
   void fetch_lines(std::uint32_t first, std::uint32_t last) const {
-    constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys, kLines = TopStore<Layout>::kLines;
+    static constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys, kLines = TopStore<Layout>::kLines;
     Status status = Status::kOk;
     for (std::uint32_t line = first / kLineKeys; line <= last / kLineKeys && status == Status::kOk; ++line) {
       if (store_.line_held[line % kLines] != line + 1) status = get_line(line);
@@ -193,9 +196,9 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     sample_step_ = TopStore<Layout>::kLineKeys;
     while (whole_count() / sample_step_ >= Layout::kTopSamples) sample_step_ *= 2;
     // A line each, as many under way as there is room for.
-    constexpr std::uint32_t kLines = TopStore<Layout>::kLines;
+    static constexpr std::uint32_t kLines = TopStore<Layout>::kLines;
     const std::uint32_t count = whole_count() / sample_step_ + (whole_count() % sample_step_ != 0 ? 1u : 0u);
-    constexpr std::uint32_t kAhead = kTriangleTagCount < kLines ? kTriangleTagCount : kLines;
+    static constexpr std::uint32_t kAhead = kTriangleTagCount < kLines ? std::uint32_t{kTriangleTagCount} : kLines;
     for (std::uint32_t i = 0; i < count + kAhead; ++i) {
       const auto tag = static_cast<std::uint8_t>(kFirstTriangleTag + i % kAhead);
       SortedKey* const line = store_.lines[i % kAhead];
@@ -249,7 +252,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
 
   // Puts the next codes of keys in the place of the first ones, their transfers before and behind.
   [[nodiscard]] Status take_again(std::uint32_t begin, std::uint32_t count) {
-    constexpr std::uint32_t kShares = 4, kKeys = Layout::kBucketKeys / kShares / 2 * 2 - 4;
+    static constexpr std::uint32_t kShares = 4, kKeys = Layout::kBucketKeys / kShares / 2 * 2 - 4;
     const auto window_of = [&](std::uint32_t share) {
       auto* const buffer = reinterpret_cast<std::byte*>(store_.keys + share % kShares * (kKeys + 4));
       return Window<SortedKey>(buffer, plan_.sorted, std::uint64_t{begin} + share * kKeys);

@@ -17,9 +17,7 @@ namespace gridiron {
 /// @returns corner 0..2 of a record.
 [[nodiscard]] GRIDIRON_INLINE CornerQuad corner_quad(const VertexTriangle& record, int corner) {
   // Behind the last corner there is a reserved word, behind another one the next.
-  Lanes<4>::FloatVector words;
-  __builtin_memcpy(&words, reinterpret_cast<const std::byte*>(&record) + corner * std::ptrdiff_t{12}, sizeof words);
-  return CornerQuad(words);
+  return quad_at(reinterpret_cast<const std::byte*>(&record) + corner * std::ptrdiff_t{12});
 }
 [[nodiscard]] GRIDIRON_INLINE CornerQuads corner_quads(const VertexTriangle& record) {
   return {corner_quad(record, 0), corner_quad(record, 1), corner_quad(record, 2)};
@@ -50,7 +48,7 @@ struct QuadBox {
   [[nodiscard]] GRIDIRON_INLINE float half_surface() const {
     const CornerQuad size = high - low;
     const CornerQuad sides = size * turned(size);
-    return sides.v[0] + sides.v[1] + sides.v[2];
+    return lane_of(sides, 0) + lane_of(sides, 1) + lane_of(sides, 2);
   }
 
   /// The box of four.
@@ -95,7 +93,7 @@ struct QuadBox {
 [[nodiscard]] inline float tree_margin_of(const float minimum[3], const float maximum[3]) {
   float largest = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
-    const float low = __builtin_fabsf(minimum[axis]), high = __builtin_fabsf(maximum[axis]);
+    const float low = magnitude(minimum[axis]), high = magnitude(maximum[axis]);
     largest = low > largest ? low : largest;
     largest = high > largest ? high : largest;
   }

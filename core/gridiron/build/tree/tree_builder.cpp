@@ -1,5 +1,6 @@
 // Building the wide tree: see the header. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
+#include <gridiron/build/mesh_quads.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/tree/tree_curve.h>
@@ -66,7 +67,7 @@ struct VertexForm {
   explicit VertexForm(const MeshView&) {}
   // Writes a triangle's record. @returns its corners.
   static GRIDIRON_INLINE CornerQuads write(const MeshView& mesh, std::uint32_t id, Record& record) {
-    const CornerQuads corners = CornerQuads::of(mesh, mesh.triangles[id]);
+    const CornerQuads corners = corners_of(mesh, mesh.triangles[id]);
     // Each store overwrites the last lane of the one before; the last lane of a corner is 0.
     auto* const bytes = reinterpret_cast<std::byte*>(&record);
     const std::uint64_t end = std::uint64_t{id} << 32;
@@ -267,7 +268,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   [[nodiscard]] FourBoxes boxes_of(const TreeKey* keys, std::uint32_t left) const {
     CornerQuads corners[4];
     for (std::uint32_t k = 0; k < 4; ++k) {
-      corners[k] = CornerQuads::of(mesh_, mesh_.triangles[keys[k < left ? k : left - 1].id()]);
+      corners[k] = corners_of(mesh_, mesh_.triangles[keys[k < left ? k : left - 1].id()]);
     }
     return FourTriangles::of(corners).boxes();
   }

@@ -25,11 +25,11 @@ struct TreeKey {
   // TreeKeys of triangles first to first + 3.
   static GRIDIRON_INLINE void store_four(Lanes<4>::Int codes, std::uint32_t first, TreeKey* keys) {
     using L = Lanes<4>;
-    const L::Int ids = L::Int::splat(first) + L::Int{{0, 1, 2, 3}};
+    const L::Int ids = L::Int::splat(first) + words_quad(0, 1, 2, 3);
     const L::Float low = L::shuffle_quads<0, 4, 1, 5>(L::floats_of(codes), L::floats_of(ids));
     const L::Float high = L::shuffle_quads<2, 6, 3, 7>(L::floats_of(codes), L::floats_of(ids));
-    __builtin_memcpy(keys, &low, sizeof low);
-    __builtin_memcpy(keys + 2, &high, sizeof high);
+    store_at(low, keys);
+    store_at(high, keys + 2);
   }
   // Along the Z curve.
   [[nodiscard]] std::uint32_t code() const { return static_cast<std::uint32_t>(bits); }
@@ -42,11 +42,11 @@ class TreeCurve {
  public:
   explicit TreeCurve(const QuadBox& middles) {
     for (int axis = 0; axis < 3; ++axis) {
-      const float low = middles.low.v[axis], extent = middles.high.v[axis] - low;
+      const float low = lane_of(middles.low, axis), extent = lane_of(middles.high, axis) - low;
       low_[axis] = CornerQuad(low);
       // The last middle falls into the last place; a smaller extent would have a scale that is no number.
       const bool has_extent = extent > 0x1p-100f;
-      scale_[axis] = CornerQuad(has_extent ? 1023.9375f / extent : 0.0f);
+      scale_[axis] = CornerQuad(has_extent ? 1023.9375f / extent : float{0.0f});
       is_flat_ = is_flat_ && !has_extent;
     }
   }

@@ -22,7 +22,7 @@ inline constexpr float kTreeLeafDensity = 1.5f;
   const CornerQuad e = corners.b - corners.a, f = corners.c - corners.a;
   const CornerQuad normal = e * turned(f) - turned(e) * f;  // z, x, y
   const CornerQuad squares = normal * normal;
-  return __builtin_sqrtf(squares.v[1] + squares.v[2] + squares.v[0]);
+  return square_root(lane_of(squares, 1) + lane_of(squares, 2) + lane_of(squares, 0));
 }
 
 /// @returns twice the areas of four triangles, bit by bit what area_of() gives for each.
@@ -37,7 +37,7 @@ inline constexpr float kTreeLeafDensity = 1.5f;
 
 /// @returns how much of a child's box its triangles fill.
 [[nodiscard]] GRIDIRON_INLINE float density_of(float area, bool is_leaf, const QuadBox& box) {
-  return area * (is_leaf ? kTreeLeafDensity : 1.0f) / box.half_surface();
+  return area * (is_leaf ? kTreeLeafDensity : float{1.0f}) / box.half_surface();
 }
 
 /// @returns TreeNode::order: the densest first; of equal ones the first.

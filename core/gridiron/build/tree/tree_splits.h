@@ -20,11 +20,16 @@ struct TreeRange {
   std::uint64_t weight;  ///< of parts that can be split, in the order in which they are; 0: a leaf
 };
 
+/// What splitting takes, for builders that count their work: parts made by splitting another one, parts whose weights
+/// were compared, steps to the place where a part is split, leaves found.
+enum class SplitWork : std::uint8_t { kPart, kWeighedPart, kSearchStep, kLeaf };
+
 /// Splits ranges. @tparam Self  a class that derives from this one and knows the keys:
 ///   std::uint32_t code_of(i)              the code of key i
 ///   std::uint32_t middle_of(range)        where a part of level > 0 is split; first_like_last() finds it
 ///   Status code_again(begin, end)         gives keys of one code codes that differ, and sorts them
 ///   std::uint32_t whole_count()           keys in all
+///   void count_work(SplitWork, amount)    what follows takes so much more of a kind of work; may be left out
 template <class Self>
 class TreeSplits {
  public:
@@ -43,6 +48,8 @@ class TreeSplits {
   }
 
  protected:
+  GRIDIRON_INLINE void count_work(SplitWork, std::uint32_t) const {}
+
   [[nodiscard]] TreeRange range_of(std::uint32_t begin, std::uint32_t end) const {
     const std::uint32_t size = end - begin;
     if (size <= leaf_triangles_) return {begin, end, -1, 0, 0};
@@ -64,7 +71,7 @@ class TreeSplits {
   [[nodiscard]] std::uint32_t split_by_number(std::uint32_t begin, std::uint32_t end, TreeRange* ranges) const {
     const std::uint64_t count = end - begin;
     const std::uint64_t leaves = (count + leaf_triangles_ - 1) / leaf_triangles_;
-    const std::uint64_t parts = leaves < kTreeWidth ? leaves : kTreeWidth;
+    const std::uint64_t parts = leaves < kTreeWidth ? leaves : std::uint64_t{kTreeWidth};
     for (std::uint64_t i = 0; i < parts; ++i) {
       ranges[i] = range_of(begin + static_cast<std::uint32_t>(count * i / parts),
                            begin + static_cast<std::uint32_t>(count * (i + 1) / parts));
@@ -76,6 +83,7 @@ class TreeSplits {
   // are most of all. @returns 0 where they do not, and where codes are equal.
   [[nodiscard]] std::uint32_t split_to_leaves(std::uint32_t begin, std::uint32_t end, TreeRange* ranges) const {
     if (end - begin > kTreeWidth * leaf_triangles_) return 0;
+    note(SplitWork::kLeaf, 0);
     std::uint32_t ends[kTreeWidth];  // of the parts from `begin` on, the last first
     std::uint32_t count = 0, open = 1;
     ends[0] = end;
@@ -89,7 +97,9 @@ class TreeSplits {
       }
       const std::uint32_t first = code_of(begin), last = code_of(part_end - 1);
       if (first == last || count + open == kTreeWidth) return 0;
-      ends[open++] = first_like_last(begin, part_end, first, last);
+      ends[open] = first_like_last(begin, part_end, first, last);
+      ++open;
+      note(SplitWork::kLeaf, 0);
     }
     return count;
   }
@@ -100,9 +110,10 @@ class TreeSplits {
     // The first is among [low, low + count]. No branch depends on a code: none could be predicted.
     std::uint32_t low = begin + 1;
     for (std::uint32_t count = end - begin - 2; count > 0;) {
+      note(SplitWork::kSearchStep, 1);
       const std::uint32_t half = (count + 1) / 2;
       const std::uint32_t code = code_of(low + half - 1);
-      low += (code ^ first) > (code ^ last) ? 0 : half;
+      low += (code ^ first) > (code ^ last) ? std::uint32_t{0} : half;
       count -= half;
     }
     return low;
@@ -122,6 +133,10 @@ class TreeSplits {
     return static_cast<const Self&>(*this).code_of(i);
   }
 
+  GRIDIRON_INLINE void note(SplitWork work, std::uint32_t amount) const {
+    static_cast<const Self&>(*this).count_work(work, amount);
+  }
+
   // Splits the part that weighs the most until there are 16 or all are leaves. A core tests rays against the union box
   // of each four children first, so the first four parts become groups of four: below the root a group gets more only
   // if no other can be split. At the root, which all rays enter, a group may grow where its parts weigh much more.
@@ -130,17 +145,21 @@ class TreeSplits {
     const std::uint64_t full_weight = static_cast<std::uint64_t>(is_root ? kRootWeight : kMostWeight) << kWeightShift;
     std::uint32_t group_sizes[kGroups] = {1, 1, 1, 1};
     std::uint64_t less[kGroups] = {};  // what the parts of a group that is full weigh less
+    note(SplitWork::kPart, 0);
     ranges[0] = range_of(begin, end);
     std::uint32_t count = 1;
     while (count < kTreeWidth) {
+      note(SplitWork::kWeighedPart, count);
       std::uint64_t most = 0;
       for (std::uint32_t i = 0; i < count; ++i) {
         const TreeRange& range = ranges[i];
-        const std::uint64_t weight = range.weight == 0 ? 0 : (range.weight - less[range.group]) | (kTreeWidth - 1 - i);
+        const std::uint64_t weight =
+            range.weight == 0 ? std::uint64_t{0} : (range.weight - less[range.group]) | (kTreeWidth - 1 - i);
         most = weight > most ? weight : most;
       }
       if (most == 0) break;
       const std::uint32_t best = kTreeWidth - 1 - static_cast<std::uint32_t>(most % kTreeWidth);
+      note(SplitWork::kPart, 1);
       GRIDIRON_TRY(split_part(ranges, count, best));
       ++count;
       const std::uint32_t group = ranges[best].group;
@@ -162,6 +181,7 @@ class TreeSplits {
       part = range_of(part.begin, part.end);
     }
     const std::uint32_t middle = self().middle_of(part);
+    note(SplitWork::kPart, 0);
     for (std::uint32_t k = count; k > i + 1; --k) ranges[k] = ranges[k - 1];
     ranges[i + 1] = range_of(middle, part.end);
     part = range_of(part.begin, middle);
