@@ -109,7 +109,8 @@ sim::PassesResult run_plan(sim::SimMemory& memory, const BuildPlan& plan, const 
     };
     passes.push_back({.name = "pass",
                       .items = {.most = plan.item_counts[i]},
-                      .data_bytes = sizeof(BuildStore<Layout>) + (way.is_instrumented ? sizeof(BuildPlan) : 0),
+                      .data_bytes = static_cast<std::uint32_t>(sizeof(BuildStore<Layout>) +
+                                                               (way.is_instrumented ? sizeof(BuildPlan) : 0)),
                       .writable = writable,
                       .kernel = sim::PassKernel(kernel),
                       .engine = &sim::work_of(static_cast<BuildPass>(i))});

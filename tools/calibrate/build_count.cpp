@@ -23,8 +23,8 @@ namespace {
 
 using Layout = BuildLayout256K;
 constexpr std::uint32_t kLeafTriangles = 8;
-constexpr std::array<const char*, kBuildPassCount> kPassNames = {"bounds", "codes",    "buckets", "cuts",   "sort",
-                                                                 "top",    "subtrees", "join",   "numbers", "check"};
+// The last pass checks an image, which there is none of here.
+constexpr std::uint32_t kPasses = static_cast<std::uint32_t>(BuildPass::kCheck);
 
 bool is_charged(std::size_t kind) {
   return !sim::is_charged_as_event(WorkId(static_cast<std::uint32_t>(kind)));
@@ -118,7 +118,7 @@ using PassBranches = std::array<Branches, kBuildPassCount>;
 PassBranches branches_of_build(std::span<const Vec3> vertices, std::span<const UVec3> triangles) {
   BuildInMemory build(vertices, triangles);
   PassBranches branches;
-  for (std::uint32_t i = 0; i < kBuildPassCount; ++i) branches[i] = branches_of(build.pass(i));
+  for (std::uint32_t i = 0; i < kPasses; ++i) branches[i] = branches_of(build.pass(i));
   return branches;
 }
 
@@ -126,7 +126,7 @@ BuildTotals totals_of_build(std::span<const Vec3> vertices, std::span<const UVec
                             const PassBranches& usual) {
   BuildInMemory build(vertices, triangles), plain(vertices, triangles);
   BuildTotals totals{};
-  for (std::uint32_t i = 0; i < kBuildPassCount; ++i) {
+  for (std::uint32_t i = 0; i < kPasses; ++i) {
     totals[i] = run_counted(build.pass(i), usual[i], {}).totals;
     const WorkCounters work = plain.run(i);
     for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
@@ -199,7 +199,7 @@ PassBranches usual_of(std::span<const PlainMesh> meshes) {
                  [&](std::size_t i) { all[i] = branches_of_build(meshes[i].vertices, meshes[i].triangles); });
   PassBranches usual;
   for (const PassBranches& one : all) {
-    for (std::uint32_t pass = 0; pass < kBuildPassCount; ++pass) add(usual[pass], one[pass]);
+    for (std::uint32_t pass = 0; pass < kPasses; ++pass) add(usual[pass], one[pass]);
   }
   return usual;
 }
@@ -241,10 +241,6 @@ double per_unit(const KindTotals& totals, std::uint64_t value) {
 
 }  // namespace
 
-std::string name_of(BuildPass pass) {
-  return kPassNames[static_cast<std::size_t>(pass)];
-}
-
 BuildTotals count_builds() {
   const std::vector<PlainMesh> meshes = calibration_meshes();
   const PassBranches usual = usual_of(meshes);
@@ -253,7 +249,7 @@ BuildTotals count_builds() {
                  [&](std::size_t i) { all[i] = totals_of_build(meshes[i].vertices, meshes[i].triangles, usual); });
   BuildTotals sum{};
   for (const BuildTotals& one : all) {
-    for (std::uint32_t pass = 0; pass < kBuildPassCount; ++pass) {
+    for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
       for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) add(sum[pass][kind], one[pass][kind]);
     }
   }
@@ -312,7 +308,7 @@ std::vector<BuildCount> count_scans(const std::filesystem::path& scenes) {
     const tool::Mesh& mesh = views[i]->mesh();
     count.scan = views[i]->scene->path.stem().string();
     count.totals = totals_of_build(mesh.vertices, mesh.triangles, usual);
-    for (std::uint32_t pass = 0; pass < kBuildPassCount; ++pass) {
+    for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
       for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) {
         if (!is_charged(kind)) continue;
         const KindTotals& t = count.totals[pass][kind];
@@ -326,14 +322,16 @@ std::vector<BuildCount> count_scans(const std::filesystem::path& scenes) {
 
 std::string build_count_table(const std::vector<BuildCount>& counts) {
   std::string text = "| build | counted, M cycles | priced | difference |";
-  for (const char* name : kPassNames) text += format(" %s |", name);
+  for (std::uint32_t i = 0; i < kPasses; ++i) {
+    text += " " + std::string(sim::name_of(static_cast<BuildPass>(i))) + " |";
+  }
   text += "\n|---|---|---|---|";
-  for (std::size_t i = 0; i < kBuildPassCount; ++i) text += "---|";
+  for (std::uint32_t i = 0; i < kPasses; ++i) text += "---|";
   text += "\n";
   for (const BuildCount& one : counts) {
     text += format("| %s | %.2f | %.2f | %+.1f %% |", one.scan.c_str(), one.all_counted() / 1e6, one.all_priced() / 1e6,
                    100 * one.error());
-    for (std::size_t i = 0; i < kBuildPassCount; ++i) {
+    for (std::uint32_t i = 0; i < kPasses; ++i) {
       text += format(" %.2f, %+.1f %% |", one.counted[i] / 1e6, 100 * (one.priced[i] / one.counted[i] - 1));
     }
     text += "\n";

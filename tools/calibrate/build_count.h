@@ -15,9 +15,6 @@ namespace gridiron::calibrate {
 /// What the passes of a build came to.
 using BuildTotals = std::array<Totals, kBuildPassCount>;
 
-/// @returns the stable, lower-case name of a pass.
-[[nodiscard]] std::string name_of(BuildPass pass);
-
 /// Counts the builds of the calibration's meshes: a fine teapot, a torus knot, the same with its triangles and vertices
 /// in another order, and knots so small in a large room that many triangles have one code. Each on one core, 256 KB.
 ///

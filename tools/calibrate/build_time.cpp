@@ -20,8 +20,6 @@ namespace gridiron::calibrate {
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 8;
-constexpr std::array<const char*, kBuildPassCount> kPassNames = {"bounds", "codes",    "buckets", "cuts",   "sort",
-                                                                 "top",    "subtrees", "join",   "numbers", "check"};
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -71,12 +69,12 @@ class SimulatedBuild {
         auto& store = *reinterpret_cast<BuildStore<Layout>*>(data.data());
         return run_build_pass(core, store, plan_, static_cast<BuildPass>(i));
       };
-      passes.push_back({.name = kPassNames[i],
+      passes.push_back({.name = sim::name_of(static_cast<BuildPass>(i)),
                         .items = {.most = plan_.item_counts[i]},
                         .data_bytes = sizeof(BuildStore<Layout>),
                         .writable = regions_,
                         .kernel = sim::PassKernel(kernel),
-                        .engine = &sim::kBuildPassesWork});
+                        .engine = &sim::work_of(static_cast<BuildPass>(i))});
     }
     sim::ChipOptions options;
     options.threads = 2;

@@ -479,7 +479,7 @@ struct CountedLoop {
   std::uint32_t turns = 0;
 
   constexpr CountedLoop(Site place, std::string_view file, std::string_view head)
-      : site(place), is_unrolled(file.find("/build/") != file.npos) {
+      : site(place), is_unrolled(file.find("/gridiron/build/") != file.npos) {
     if (!is_unrolled && (head.starts_with("std::uint") || head.find("&&") != head.npos)) site = 0;
     expect_condition();
   }

@@ -36,6 +36,7 @@
 namespace gridiron_counted {
 
 using gridiron::BuildWork;
+using gridiron::CheckWork;
 using gridiron::GridWork;
 using gridiron::InPlaceReader;
 using gridiron::ItemClaim;

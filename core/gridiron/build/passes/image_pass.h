@@ -15,7 +15,7 @@
 namespace gridiron {
 
 /// What stands before the records, in the bytes of build_scene_image().
-struct alignas(kLineBytes) TreeImageHead {
+struct alignas(128) TreeImageHead {
   ImageHeader header;
   std::byte header_padding[kLineBytes - sizeof(ImageHeader)];
   SectionEntry entries[3];  // tree, triangles, nodes
