@@ -130,8 +130,8 @@ TEST(Animate, CoresBuildTheTreeOfEachFrame) {
   const std::vector<Row> passes = read_table(folder.path("out/animation_passes.csv"));
   ASSERT_EQ(rows.size(), 3u);
   ASSERT_EQ(passes.size(), 3u * 12);
-  const std::string names[] = {"bounds", "codes", "buckets", "cuts", "sort", "top", "subtrees", "join", "numbers", "check",
-                               "check_value", "picture"};
+  const std::string names[] = {"bounds", "codes", "buckets", "cuts", "sort", "top", "subtrees", "join",
+                               "numbers", "check", "check_value", "picture"};
   for (std::size_t i = 0; i < 3; ++i) {
     const Row& row = rows[i];
     EXPECT_EQ(row.at("hash"), of_master[i].at("hash"));
@@ -170,7 +170,9 @@ TEST(Animate, PutsVerticesInOrderOnce) {
   const std::size_t count = mesh.vertices.size();
   for (std::size_t i = 0; i < count; ++i) mixed.vertices[i * 3847 % count] = mesh.vertices[i];
   for (UVec3& triangle : mixed.triangles) {
-    for (int corner = 0; corner < 3; ++corner) triangle[corner] = static_cast<std::uint32_t>(triangle[corner] * 3847ull % count);
+    for (int corner = 0; corner < 3; ++corner) {
+      triangle[corner] = static_cast<std::uint32_t>(triangle[corner] * 3847ull % count);
+    }
   }
   ASSERT_NE(count % 3847, 0u);
   const TemporaryFolder folder("good.ply", mesh);

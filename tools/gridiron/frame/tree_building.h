@@ -1,6 +1,6 @@
 // Tree building: the cores of the simulated chip build the tree of a frame's scene image.
-// Memory: in the frame's main memory, free again afterwards. Threads: starts the chip's. SPDX-License-Identifier:
-// Apache-2.0
+// Memory: in the frame's main memory, free again afterwards. Threads: starts the chip's.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/build/grid/grid_builder.h>
