@@ -215,8 +215,8 @@ Totals sum_of(const BuildTotals& totals) {
 }
 
 constexpr std::string_view kTableHead =
-    R"(// What a unit of each kind of work of the passes that build the tree costs on a core of two in-order pipes. Written by
-// gridiron_calibrate from counted operations of the passes themselves; do not edit. tools/calibrate/README.md says how.
+    R"(// What a unit of each kind of work of the passes that build a tree costs on a core of two in-order pipes.
+// Written by gridiron_calibrate from counted operations of the passes; do not edit. tools/calibrate/README.md says how.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

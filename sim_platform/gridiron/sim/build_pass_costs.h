@@ -1,5 +1,5 @@
-// What a unit of each kind of work of the passes that build the tree costs on a core of two in-order pipes. Written by
-// gridiron_calibrate from counted operations of the passes themselves; do not edit. tools/calibrate/README.md says how.
+// What a unit of each kind of work of the passes that build a tree costs on a core of two in-order pipes.
+// Written by gridiron_calibrate from counted operations of the passes; do not edit. tools/calibrate/README.md says how.
 // Memory: constants. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 

@@ -130,9 +130,8 @@ TEST(Animate, CoresBuildTheTreeOfEachFrame) {
   const std::vector<Row> passes = read_table(folder.path("out/animation_passes.csv"));
   ASSERT_EQ(rows.size(), 3u);
   ASSERT_EQ(passes.size(), 3u * 12);
-  const std::string names[] = {"bounds", "codes", "buckets", "cuts", "sort", "top", "subtrees", "join", "numbers",
-                               "check",
-                               "check_value", "picture"};
+  const std::string names[] = {"bounds", "codes", "buckets", "cuts", "sort", "top", "subtrees", "join",
+                               "numbers", "check", "check_value", "picture"};
   for (std::size_t i = 0; i < 3; ++i) {
     const Row& row = rows[i];
     EXPECT_EQ(row.at("hash"), of_master[i].at("hash"));
