@@ -88,7 +88,7 @@ template <class P>
         transfers, store.lines, plan.input.image, first,
         first + kPieceLines < line_count ? first + kPieceLines : line_count, kFirstMacroTag,
         [&](const Line* lines, std::uint64_t, std::uint32_t count) {
-          value.add({lines->bytes, std::size_t{count} * kLineBytes});
+          value.add({lines->bytes, static_cast<std::size_t>(count * kLineBytes)});
           transfers.add_work(CheckWork::kCheckedLine, count);
           return Status::kOk;
         })));
