@@ -216,6 +216,8 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
 
   [[nodiscard]] std::uint32_t middle_of(const TreeRange& part) const {
     const std::uint32_t first = code_of(part.begin), last = code_of(part.end - 1);
+    // What could not be fetched is no code, and samples do not fit it.
+    if (status_ != Status::kOk) return part.begin + 1;
     // The first sample that is like the last key lies at or behind the middle, the one before it in front.
     std::uint32_t low = part.begin / sample_step_ + 1, size = (part.end - 1) / sample_step_ + 1 - low;
     while (size > 0) {
@@ -226,6 +228,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     const std::uint32_t before = (low - 1) * sample_step_, after = low * sample_step_ + 1;
     const std::uint32_t begin = before > part.begin ? before : part.begin, end = after < part.end ? after : part.end;
     if (end - begin <= kGap) fetch_lines(begin, end - 1);
+    if (status_ != Status::kOk) return part.begin + 1;
     return this->first_like_last(begin, end, first, last);
   }
 
