@@ -21,8 +21,8 @@ namespace gridiron {
 /// Sizes of a core of 256 KB. None changes a byte of the tree.
 struct BuildLayout256K {
   static constexpr std::uint32_t kArenaBytes = 256 * 1024;      ///< local memory of a core
-  static constexpr std::uint32_t kCodeBudgetBytes = 60 * 1024;  ///< of it for code
-  static constexpr std::uint32_t kStackBudgetBytes = 8 * 1024;  ///< of it for the stack
+  static constexpr std::uint32_t kCodeBudgetBytes = 63 * 1024;  ///< of it for code
+  static constexpr std::uint32_t kStackBudgetBytes = 5 * 1024;  ///< of it for the stack
   static constexpr std::uint32_t kRunTriangles = 1792;          ///< that one item codes and sorts
   static constexpr bool kSortsRecords = true;                   ///< runs have their records in the order of codes
   static constexpr std::uint32_t kCacheLines = 512;             ///< of vertices, a power of two
