@@ -201,7 +201,8 @@ TEST_P(BuildOrders, EveryForgottenWaitIsFound) {
         << "call " << wait << ", the last for its tag";
     // Only puts may end later: what a get brings is used after its own wait.
     for (const LoggedTransfer& ended : reference_.transfers) {
-      if (ended.wait_call == wait) EXPECT_TRUE(ended.is_put) << "call " << wait;
+      if (ended.wait_call != wait) continue;
+      EXPECT_TRUE(ended.is_put) << "call " << wait;
     }
   }
   EXPECT_GT(found, 0u);

@@ -94,7 +94,6 @@ Status run_instrumented([[maybe_unused]] sim::SimCore& core, [[maybe_unused]] st
 template <class Layout>
 sim::PassesResult run_plan(sim::SimMemory& memory, const BuildPlan& plan, const Way& way,
                            const std::vector<sim::MainRange>& writable) {
-  const std::uint32_t plan_bytes = way.is_instrumented ? std::uint32_t{sizeof(BuildPlan)} : std::uint32_t{0};
   std::vector<sim::Pass> passes;
   for (std::uint32_t i = 0; i < kBuildPassCount; ++i) {
     const auto kernel = [&plan, &way, i](auto& core, std::span<std::byte> data) {

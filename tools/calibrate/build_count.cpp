@@ -323,7 +323,7 @@ std::vector<BuildCount> count_scans(const std::filesystem::path& scenes) {
 std::string build_count_table(const std::vector<BuildCount>& counts) {
   std::string text = "| build | counted, M cycles | priced | difference |";
   for (std::uint32_t i = 0; i < kPasses; ++i) {
-    text += " " + std::string(sim::name_of(static_cast<BuildPass>(i))) + " |";
+    text += format(" %s |", std::string(sim::name_of(static_cast<BuildPass>(i))).c_str());
   }
   text += "\n|---|---|---|---|";
   for (std::uint32_t i = 0; i < kPasses; ++i) text += "---|";
