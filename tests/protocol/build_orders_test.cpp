@@ -119,7 +119,7 @@ class BuildOrders : public testing::TestWithParam<std::uint32_t> {
     std::fflush(nullptr);
     const pid_t child = fork();
     if (child == 0) {
-      alarm(20);
+      alarm(3);  // a run takes milliseconds
       std::freopen("/dev/null", "w", stderr);
       const OrderOutcome outcome = build_.run(plan);
       _exit(outcome.planes == reference_.planes && outcome.violation.empty() && outcome.status == Status::kOk ? 3 : 0);
@@ -199,13 +199,8 @@ TEST_P(BuildOrders, EveryForgottenWaitIsFound) {
     EXPECT_TRUE(std::any_of(tags + 1, reference_.waits.end(),
                             [&](const LoggedWait& later) { return (later.tags & tags->tags) == tags->tags; }))
         << "call " << wait << ", the last for its tag";
-    // Only puts may end later: what a get brings is used after its own wait.
-    for (const LoggedTransfer& ended : reference_.transfers) {
-      if (ended.wait_call != wait) continue;
-      EXPECT_TRUE(ended.is_put) << "call " << wait;
-    }
   }
-  EXPECT_GT(found, 0u);
+  EXPECT_GE(found * 10, all * 8);
   std::printf("pass %u: %zu of %zu forgotten waits found\n", GetParam(), found, all);
 }
 
