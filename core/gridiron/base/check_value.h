@@ -37,7 +37,7 @@ class CheckValue {
 /// last have kPieceBytes.
 class ImageCheckValue {
  public:
-  static constexpr std::uint32_t kPieceBytes = 16 * 1024;
+  static constexpr std::uint32_t kPieceBytes = 16 * 1024;  ///< of a piece, but for the last
 
   /// Appends bytes. Precondition: their number is a multiple of CheckValue::kGroupBytes.
   void add(std::span<const std::byte> bytes);
