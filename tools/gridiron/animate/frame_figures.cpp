@@ -227,13 +227,12 @@ std::string table_of(const std::vector<NamedFrame>& frames, const sim::MachinePr
 void print_frames(const std::vector<NamedFrame>& frames, const sim::MachineProfile& machine, std::uint32_t cores,
                   const std::optional<SingleBuild>& build) {
   std::printf("%-24s %14s %9s %14s %9s %9s\n", "frame", "build cycles", "ms", "render cycles", "ms", "frames/s");
-  double seconds = 0, build_seconds = 0;
+  double seconds = 0;
   for (const NamedFrame& frame : frames) {
     const FrameFigures& figures = frame.figures;
     char build_milliseconds[32] = "";
     if (!build && figures.build) {
       std::snprintf(build_milliseconds, sizeof build_milliseconds, "%.3f", figures.build->seconds * 1e3);
-      build_seconds += figures.build->seconds;
     }
     std::printf("%-24s %14s %9s %14s %9.3f %9.2f\n", frame.picture.c_str(),
                 build           ? "none"
