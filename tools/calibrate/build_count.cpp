@@ -6,6 +6,7 @@
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/sim/build_pass_work.h>
 #include <scene_makers/shapes.h>
+#include <table_words.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,17 +26,6 @@ using Layout = BuildLayout256K;
 constexpr std::uint32_t kLeafTriangles = 8;
 // The last pass checks an image, which there is none of here.
 constexpr std::uint32_t kPasses = static_cast<std::uint32_t>(BuildPass::kCheck);
-
-bool is_charged(std::size_t kind) {
-  return !sim::is_charged_as_event(WorkId(static_cast<std::uint32_t>(kind)));
-}
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[400];
-  const int length = std::snprintf(text, sizeof(text), pattern, values...);
-  return std::string(text, static_cast<std::size_t>(length));
-}
 
 void check(bool holds, const char* words) {
   if (!holds) throw std::runtime_error(words);

@@ -5,6 +5,7 @@
 #include <gridiron/sim/build_pass_work.h>
 #include <gridiron/sim/pass_timing.h>
 #include <gridiron/sim/passes.h>
+#include <table_words.h>
 
 #include <algorithm>
 #include <array>
@@ -20,13 +21,6 @@ namespace gridiron::calibrate {
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 8;
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[400];
-  const int length = std::snprintf(text, sizeof(text), pattern, values...);
-  return std::string(text, static_cast<std::size_t>(length));
-}
 
 void require(bool holds, const char* words) {
   if (!holds) throw std::runtime_error(words);

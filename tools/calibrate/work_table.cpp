@@ -3,6 +3,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/bvh/bvh_engine_work.h>
 #include <scene_makers/shapes.h>
+#include <table_words.h>
 #include <work_table.h>
 
 #include <algorithm>
@@ -168,17 +169,6 @@ std::vector<ExactDecision> decisions_of(const Scene& scene) {
     set(decisions[i].c, scene.vertices[triangle.z]);
   }
   return decisions;
-}
-
-bool is_charged(std::size_t kind) {
-  return !sim::is_charged_as_event(WorkId(static_cast<std::uint32_t>(kind)));
-}
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[400];
-  const int length = std::snprintf(text, sizeof(text), pattern, values...);
-  return std::string(text, static_cast<std::size_t>(length));
 }
 
 double per_unit(const KindTotals& totals, double value) {

@@ -111,7 +111,7 @@ static_assert(sizeof(RunPart) == 128);
 struct BuildState {
   float low[4], high[4];
   std::uint32_t triangle_count;  ///< kept
-  std::uint32_t bucket_count;    ///< that are not empty for sure
+  std::uint32_t bucket_count;    ///< to sort; some may be empty
   std::uint32_t reserved[22];
 };
 static_assert(sizeof(BuildState) == 128);
