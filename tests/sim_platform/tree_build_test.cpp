@@ -312,6 +312,16 @@ TYPED_TEST(TreeBuild, OfCrowds) {
   expect_same_any_way<TypeParam>(joined(crowd, twin), 8);
 }
 
+// While one core codes a crowd again in main memory, others read the records of their buckets.
+TYPED_TEST(TreeBuild, OfCrowdsAmongOthers) {
+  const TestMesh others = make_random_soup(9000, 0.3f, 9);
+  for (const std::uint32_t count : {33u, 200u, TypeParam::kBucketKeys - 100, TypeParam::kBucketKeys + 1000}) {
+    TestMesh mesh = joined(moved(make_random_soup(count, 0.001f, 3), 1e-5f), others);
+    mesh.append(moved(make_random_soup(count / 2, 0.001f, 4), 1e-5f, Vec3(0.125f)));
+    expect_same_any_way<TypeParam>(mesh, 4);
+  }
+}
+
 // So many levels that triangles are split by their number, also in the middle of a crowd.
 TYPED_TEST(TreeBuild, OfDeepTrees) {
   TestMesh nested;

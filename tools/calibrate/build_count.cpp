@@ -158,7 +158,7 @@ std::vector<std::uint32_t> shuffle(std::vector<Element>& elements, std::mt19937&
 }
 
 std::vector<PlainMesh> calibration_meshes() {
-  constexpr std::uint32_t kSegments = 20, kKnot = 50'000, kSmallKnot = 2'000, kSmallKnots = 12;
+  constexpr std::uint32_t kSegments = 20, kKnot = 50'000, kSmallKnot = 2'000, kSmallKnots = 12, kCrowd = 6'000;
   std::vector<PlainMesh> meshes;
   meshes.push_back(mesh_of(scene_makers::make_teapot(kSegments), 1, {}));
   meshes.push_back(mesh_of(scene_makers::make_torus_knot(kKnot / 2), 1, {}));
@@ -175,6 +175,8 @@ std::vector<PlainMesh> calibration_meshes() {
     const Vec3 offset(static_cast<float>(i % 4) * 7.0f, static_cast<float>(i / 4) * 3.0f, static_cast<float>(i) * 2.0f);
     append(room, mesh_of(scene_makers::make_torus_knot(kSmallKnot), i % 3 == 0 ? 0.0005f : 0.02f, offset));
   }
+  // More of one code than the store holds with their records.
+  append(room, mesh_of(scene_makers::make_torus_knot(kCrowd), 0.0005f, Vec3(1.0f, 9.0f, -3.0f)));
   meshes.push_back(std::move(room));
   return meshes;
 }

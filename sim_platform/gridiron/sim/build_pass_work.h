@@ -23,11 +23,12 @@ inline constexpr WorkKind kBuildPassKinds[] = {
     {BuildWork::kCodedGroup, "coded_group"}, {BuildWork::kSortedRecord, "sorted_record"},
     {BuildWork::kSortCount, "sort_count"}, {BuildWork::kMovedKey, "moved_key"},
     {BuildWork::kExchangedKey, "exchanged_key"}, {BuildWork::kGatheredKey, "gathered_key"},
-    {BuildWork::kMiddleGroup, "middle_group"}, {BuildWork::kAgainGroup, "again_group"},
+    {BuildWork::kAgainGroup, "again_group"},
     {BuildWork::kAskedRecord, "asked_record"}, {BuildWork::kRecordSpan, "record_span"},
     {BuildWork::kTakenRecord, "taken_record"},
     {BuildWork::kLeaf, "built_leaf"},
     {BuildWork::kPart, "part"}, {BuildWork::kWeighedPart, "weighed_part"}, {BuildWork::kSearchStep, "search_step"},
+    {BuildWork::kCutStep, "cut_step"},
     {BuildWork::kNode, "built_node"}, {BuildWork::kNumberedNode, "numbered_node"}};
 
 inline constexpr WorkKind kCheckPassKinds[] = {{CheckWork::kCheckedLine, "checked_line"}};

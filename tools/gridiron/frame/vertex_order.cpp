@@ -77,13 +77,15 @@ Places by_space(const Mesh& mesh) {
 std::uint64_t lines_of(const Mesh& mesh, const Places& places) {
   std::array<std::uint64_t, BuildLayout256K::kCacheLines> held{};  // line + 1; 0: none
   std::uint64_t count = 0;
+  const std::uint32_t run_triangles =
+      run_triangles_of<BuildLayout256K>(static_cast<std::uint32_t>(mesh.triangles.size()));
   const auto take = [&held, &count](std::uint64_t line) {
     std::uint64_t& place = held[line % held.size()];
     count += place != line + 1 ? 1 : 0;
     place = line + 1;
   };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (i % BuildLayout256K::kRunTriangles == 0) held.fill(0);
+    if (i % run_triangles == 0) held.fill(0);
     for (int corner = 0; corner < 3; ++corner) {
       const std::uint64_t begin = std::uint64_t{places[mesh.triangles[i][corner]]} * sizeof(Vec3);
       const std::uint64_t first = begin / kLineBytes, last = (begin + sizeof(Vec3) - 1) / kLineBytes;

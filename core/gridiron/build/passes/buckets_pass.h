@@ -57,7 +57,7 @@ class WordWriter {
   std::uint32_t side_ = 0, count_ = 0;
 };
 
-/// Writes state and splitters: of bucket i the least code, of those behind the last kNoSample. Items: one.
+/// Writes state and splitters: of bucket i the least code, of the one behind the last kNoSample. Items: one.
 /// Errors: kNoTriangles, kMemoryTooSmall.
 template <class Layout, class P>
 [[nodiscard]] Status run_buckets_pass(BuildTransfers<P>& transfers, BucketsStore<Layout>& store,
@@ -117,7 +117,7 @@ template <class Layout, class P>
       i = end;
     }
     store.state.bucket_count = buckets;
-    for (std::uint32_t i = buckets; i <= plan.bucket_room; ++i) GRIDIRON_TRY(splitters.write(kNoSample));
+    GRIDIRON_TRY(splitters.write(kNoSample));
     GRIDIRON_TRY(splitters.end());
     GRIDIRON_TRY(transfers.put(&store.state, plan.state, sizeof(BuildState), kFirstOutputTag));
     return transfers.wait(kFirstOutputTag);

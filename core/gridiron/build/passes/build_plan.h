@@ -29,12 +29,15 @@ struct BuildLayout256K {
   static constexpr std::uint32_t kChunkTriangles = 32;          ///< whose corners are asked for at once
   static constexpr std::uint32_t kIndexWindow = 128;            ///< triangles
   static constexpr std::uint32_t kSamples = 4096;               ///< codes by which buckets are chosen, at most
-  static constexpr std::uint32_t kBucketKeys = 7680;            ///< that are sorted in the store
+  static constexpr std::uint32_t kBucketKeys = 2432;            ///< that are sorted in the store, with their records
+  static constexpr std::uint32_t kBucketRecords = 2704;         ///< places for these, a few between runs
+  static constexpr std::uint32_t kLoneKeys = 9216;              ///< that are sorted there without their records
   static constexpr std::uint32_t kPieceKeys = 7680;             ///< that are split there
+  static constexpr std::uint32_t kFarKeys = 1024;               ///< of more than fit the store, sorted at once
   static constexpr std::uint32_t kDigitBits = 9;                ///< of a code, sorted at once
   static constexpr std::uint32_t kFewDigitBits = 6;             ///< the same for a few keys
   static constexpr std::uint32_t kTopSamples = 4096;            ///< codes that guide the splits of large ranges
-  static constexpr std::uint32_t kNodeLag = 2;                  ///< nodes of a level that wait for their triangles
+  static constexpr std::uint32_t kRecordWindow = 32;            ///< records that are read or written at once
 };
 
 /// Sizes of a core of 64 KB.
@@ -50,11 +53,14 @@ struct BuildLayout64K {
   static constexpr std::uint32_t kIndexWindow = 32;
   static constexpr std::uint32_t kSamples = 1024;
   static constexpr std::uint32_t kBucketKeys = 768;
-  static constexpr std::uint32_t kPieceKeys = 704;
+  static constexpr std::uint32_t kBucketRecords = 0;
+  static constexpr std::uint32_t kLoneKeys = 768;
+  static constexpr std::uint32_t kPieceKeys = 448;
+  static constexpr std::uint32_t kFarKeys = 128;
   static constexpr std::uint32_t kDigitBits = 6;
   static constexpr std::uint32_t kFewDigitBits = 6;
   static constexpr std::uint32_t kTopSamples = 512;
-  static constexpr std::uint32_t kNodeLag = 1;
+  static constexpr std::uint32_t kRecordWindow = 16;
   /// @endcond
 };
 
@@ -116,10 +122,12 @@ struct BuildState {
 };
 static_assert(sizeof(BuildState) == 128);
 
-/// A sorted key. The id of a key is the place of its triangle's record. Where its code is that of more than
-/// kFewTreeTriangles, `again` is the key that stands at this place once they are coded again.
+/// What is known of the triangle whose record stands at the same place among the sorted ones. Triangles whose code is
+/// that of more than kFewTreeTriangles, a crowd, stand in the order of `again`, their codes on a lattice of their own.
 struct alignas(16) SortedKey {
-  TreeKey key, again;
+  std::uint32_t code, again;
+  float area;
+  std::uint32_t place;  ///< of its record before it is sorted, where a crowd is coded again in main memory
 };
 static_assert(sizeof(SortedKey) == 16);
 
@@ -127,7 +135,9 @@ static_assert(sizeof(SortedKey) == 16);
 struct Piece {
   std::uint32_t begin, end;
   std::uint32_t depth;   ///< of the node; 0: a leaf
-  std::uint32_t bucket;  ///< that it is in
+  std::uint32_t bucket;  ///< that it is in, and whether it is part of a crowd that was split by `again`
+  static constexpr std::uint32_t kOfCrowd = 1u << 31;
+  [[nodiscard]] std::uint32_t bucket_number() const { return bucket & ~kOfCrowd; }
 };
 static_assert(sizeof(Piece) == 16);
 
@@ -192,6 +202,8 @@ inline constexpr std::uint32_t kBucketPieces = 256;  ///< of a bucket, at most
 inline constexpr std::uint32_t kVertexBytes = sizeof(Vec3), kIndexBytes = sizeof(UVec3);
 static_assert(kVertexBytes == 12 && kIndexBytes == 12);
 
+inline constexpr std::uint32_t kLeastSampleStep = 8;  ///< between sorted keys that guide the top pass
+
 /// The passes in their order.
 enum class BuildPass : std::uint8_t {
   kBounds,
@@ -212,6 +224,8 @@ inline constexpr std::uint32_t kBuildPassCount = static_cast<std::uint32_t>(Buil
 struct BuildPlan {
   BuildInput input;
   std::uint32_t vertex_items, run_count, run_stride;  ///< run_stride: entries of a row of cuts, a multiple of kRunGroup
+  std::uint32_t run_triangles;                        ///< of a run
+  std::uint32_t sample_step;                          ///< every so many'th sorted key guides the top pass
   std::uint32_t run_samples;                          ///< of a run
   std::uint32_t sampled_runs;                         ///< every so many'th run is sampled
   std::uint32_t bucket_room;                          ///< buckets that are sorted, at most
@@ -219,8 +233,8 @@ struct BuildPlan {
   std::uint32_t piece_limit;                          ///< triangles of a piece that can be split
   std::uint32_t subtree_room;                         ///< buckets of pieces, at most
   std::uint32_t item_counts[kBuildPassCount];
-  MainAddress vertex_parts, run_keys, samples, run_parts, state, splitters, cuts, sorted, raw_records, top_state, tops,
-      top_results, pieces, piece_results, buckets, level_counts, level_firsts, raw_nodes, piece_checks;
+  MainAddress vertex_parts, run_keys, samples, run_parts, state, splitters, cuts, sorted, sorted_samples, raw_records,
+      top_state, tops, top_results, pieces, piece_results, buckets, level_counts, level_firsts, raw_nodes, piece_checks;
   std::uint64_t end;  ///< of scratch memory
 };
 
@@ -237,6 +251,19 @@ struct BuildPlan {
       round_up<std::uint64_t>(std::uint64_t{kept} * sizeof(VertexTriangle), kLineBytes));
 }
 
+/// @returns triangles of a run: so many runs that any few cores end at about the same time.
+template <class Layout>
+[[nodiscard]] constexpr std::uint32_t run_triangles_of(std::uint32_t triangle_count) {
+  constexpr std::uint32_t kLeastRuns = 48, kRunsMultiple = 12, kLeastTriangles = 64, kMultiple = 32;
+  const std::uint32_t needed = triangle_count / Layout::kRunTriangles + 1;
+  const std::uint32_t runs =
+      needed < kLeastRuns ? kLeastRuns : (needed + kRunsMultiple - 1) / kRunsMultiple * kRunsMultiple;
+  const std::uint32_t triangles = round_up(triangle_count / runs + 1, kMultiple);
+  return triangles < kLeastTriangles         ? kLeastTriangles
+         : triangles < Layout::kRunTriangles ? triangles
+                                             : Layout::kRunTriangles;
+}
+
 /// Errors: kBadParameter, kTooManyTriangles: as of build_tree().
 template <class Layout>
 [[nodiscard]] constexpr Status plan_build(const BuildInput& input, BuildPlan& plan) {
@@ -250,13 +277,14 @@ template <class Layout>
   plan.input = input;
   if (input.is_tree_image) plan.input.records = input.image.offset_by(kTreeImageHeadBytes);
   plan.vertex_items = shares(input.vertex_count, kVertexItem);
-  plan.run_count = shares(n, Layout::kRunTriangles);
+  plan.run_triangles = run_triangles_of<Layout>(n);
+  plan.run_count = shares(n, plan.run_triangles);
   plan.run_stride = round_up(plan.run_count, kRunGroup);
   plan.sampled_runs = 1;
   while (std::uint64_t{shares(plan.run_count, plan.sampled_runs)} * kLeastRunSamples > Layout::kSamples)
     ++plan.sampled_runs;
   plan.run_samples = kLeastRunSamples;
-  while (plan.run_samples * 8 <= Layout::kRunTriangles && plan.run_samples < kMostRunSamples &&
+  while (plan.run_samples * 8 <= plan.run_triangles && plan.run_samples < kMostRunSamples &&
          std::uint64_t{shares(plan.run_count, plan.sampled_runs)} * plan.run_samples * 2 <= Layout::kSamples) {
     plan.run_samples *= 2;
   }
@@ -266,10 +294,12 @@ template <class Layout>
   };
   plan.bucket_limit = clamped(n / 48, Layout::kBucketKeys / 16, Layout::kBucketKeys * 15 / 32);
   plan.bucket_room = 2 * shares(n, plan.bucket_limit) + 2;
-  plan.piece_limit = clamped(n / 64, Layout::kPieceKeys / 16, Layout::kPieceKeys);
+  plan.piece_limit = clamped(n / 48, Layout::kPieceKeys / 16, Layout::kPieceKeys);
   const std::uint32_t top_room = (kMaxTreeDepth - 1) * shares(n, plan.piece_limit) + 1;
   const std::uint32_t piece_room = top_room * kTreeWidth;
   plan.subtree_room = 2 * shares(n, plan.piece_limit) + 2 + shares(piece_room, kBucketPieces);
+  plan.sample_step = kLeastSampleStep;
+  while (n / plan.sample_step >= Layout::kTopSamples) plan.sample_step *= 2;
   std::uint32_t items[kBuildPassCount] = {plan.vertex_items,
                                           plan.run_count,
                                           1,
@@ -289,13 +319,14 @@ template <class Layout>
     return address;
   };
   plan.vertex_parts = place(sizeof(CornerBox) * std::uint64_t{plan.vertex_items});
-  plan.run_keys = place(sizeof(TreeKey) * std::uint64_t{Layout::kRunTriangles} * plan.run_count);
+  plan.run_keys = place(sizeof(TreeKey) * std::uint64_t{plan.run_triangles} * plan.run_count);
   plan.samples = place(std::uint64_t{4} * plan.run_samples * shares(plan.run_count, plan.sampled_runs));
   plan.run_parts = place(sizeof(RunPart) * std::uint64_t{plan.run_count});
   plan.state = place(sizeof(BuildState));
   plan.splitters = place(std::uint64_t{4} * (plan.bucket_room + 1));
   plan.cuts = place(std::uint64_t{4} * plan.run_stride * (plan.bucket_room + 1));
   plan.sorted = place(sizeof(SortedKey) * std::uint64_t{n});
+  plan.sorted_samples = place(sizeof(SortedKey) * (std::uint64_t{n / plan.sample_step} + 1));
   plan.raw_records = place(sizeof(VertexTriangle) * std::uint64_t{n});
   plan.top_state = place(sizeof(TopState));
   plan.tops = place(sizeof(TopNode) * std::uint64_t{top_room});

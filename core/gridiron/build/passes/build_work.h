@@ -20,15 +20,15 @@ enum class BuildWork : std::uint8_t {
   kMovedKey,         ///< keys moved to where a digit of their codes belongs
   kExchangedKey,     ///< keys looked at, and moved where needed, behind the ones before them
   kGatheredKey,      ///< keys taken from runs to their bucket, of each piece of a run 16 more; or from here to there
-  kMiddleGroup,      ///< SIMD groups of triangles whose middles were found, to code them again
-  kAgainGroup,       ///< SIMD groups of triangles coded again
+  kAgainGroup,       ///< SIMD groups of triangles gone through to code them again: first for the range of their middles
   kAskedRecord,      ///< records asked for
   kRecordSpan,       ///< transfers of records that lie close to one another
   kTakenRecord,      ///< records of leaves taken: box, area, and the record written
   kLeaf,             ///< leaves whose boxes went to their nodes
   kPart,             ///< parts of ranges made by splitting another one
   kWeighedPart,      ///< parts whose weights were compared, to split the one that weighs the most
-  kSearchStep,       ///< steps to the place where a part is split, or where a bucket begins in a run
+  kSearchStep,       ///< steps to the place where a part is split
+  kCutStep,          ///< steps to the place where a bucket begins in a run
   kNode,             ///< nodes made: boxes and order of their children
   kNumberedNode,     ///< nodes that got their numbers
   kEnd

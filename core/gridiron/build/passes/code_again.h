@@ -8,8 +8,15 @@
 #include <gridiron/build/passes/record_stream.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_curve.h>
+#include <gridiron/build/tree/tree_order.h>
 
 namespace gridiron {
+
+/// A key that is being sorted, and the one that follows it once its crowd is coded again.
+struct alignas(16) BucketKey {
+  TreeKey key, again;
+};
+static_assert(sizeof(BucketKey) == sizeof(SortedKey));
 
 // Crowds are few: one copy of each of these, as every four inlined are kilobytes on a core without vectors.
 [[nodiscard]] inline GRIDIRON_OUTLINE FourBoxes boxes_of_four(const CornerQuads* corners) {
@@ -20,133 +27,109 @@ inline GRIDIRON_OUTLINE void codes_of_four(const TreeCurve& curve, const FourBox
   for (int k = 0; k < 4; ++k) codes[k] = static_cast<std::uint32_t>(found[k]);
 }
 
-/// Collects records in fours and passes their boxes on.
+/// Calls use(boxes, count) -> Status for triangles in fours; if fewer than four are left, the last one is repeated.
 template <class Use>
 class BoxQuads {
  public:
-  /// @param use  use(boxes, ids, count) for 1 to 4 triangles; if fewer than four, the last one is repeated.
-  explicit BoxQuads(Use& use) : use_(use) {}
+  /// @param count  of triangles in all.
+  BoxQuads(Use& use, std::uint32_t count) : use_(use), left_(count) {}
 
-  GRIDIRON_INLINE void operator()(const VertexTriangle& record, std::uint32_t id) {
-    corners_[count_] = corner_quads(record);
-    ids_[count_] = id;
-    if (++count_ == 4) flush();
+  [[nodiscard]] GRIDIRON_INLINE Status operator()(const VertexTriangle& record, std::uint32_t) {
+    corners_[held_++] = corner_quads(record);
+    --left_;
+    return held_ < 4 && left_ > 0 ? Status::kOk : flush();
   }
-  GRIDIRON_INLINE void end() {
-    if (count_ == 0) return;
-    for (std::uint32_t i = count_; i < 4; ++i) corners_[i] = corners_[count_ - 1];
-    flush();
+  /// The same for several that are in the store. @param record_of  record_of(i) -> const VertexTriangle&
+  template <class RecordOf>
+  [[nodiscard]] GRIDIRON_INLINE Status take(std::uint32_t count, RecordOf&& record_of) {
+    std::uint32_t i = 0;
+    for (; i < count && held_ > 0; ++i) GRIDIRON_TRY((*this)(record_of(i), i));
+    for (; count - i >= 4; i += 4) {
+      for (std::uint32_t k = 0; k < 4; ++k) corners_[k] = corner_quads(record_of(i + k));
+      left_ -= 4;
+      GRIDIRON_TRY(use_(boxes_of_four(corners_), 4));
+    }
+    for (; i < count; ++i) GRIDIRON_TRY((*this)(record_of(i), i));
+    return Status::kOk;
   }
 
  private:
-  GRIDIRON_INLINE void flush() {
-    use_(boxes_of_four(corners_), ids_, count_);
-    count_ = 0;
+  [[nodiscard]] GRIDIRON_OUTLINE Status flush() {
+    const std::uint32_t count = held_;
+    for (; held_ < 4; ++held_) corners_[held_] = corners_[count - 1];
+    held_ = 0;
+    return use_(boxes_of_four(corners_), count);
   }
   Use& use_;
   CornerQuads corners_[4];
-  std::uint32_t ids_[4];
-  std::uint32_t count_ = 0;
+  std::uint32_t held_ = 0, left_;
 };
 
-/// Calls use(boxes, ids, count) for triangles in fours. @param kind  of work. @param each_id  each_id(push) calls
-/// push(id) for all of them.
-template <class P, class EachId, class Use>
-[[nodiscard]] Status for_each_boxes(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records, BuildWork kind,
-                                    EachId&& each_id, Use&& use) {
-  BoxQuads<Use> quads(use);
-  RecordTaker<P, BoxQuads<Use>> taker(transfers, ring, records, kind, quads);
-  const auto push = [&taker](std::uint32_t id) GRIDIRON_INLINE_LAMBDA { return taker.push(id); };
-  GRIDIRON_TRY(each_id(push));
-  GRIDIRON_TRY(taker.end());
-  quads.end();
-  return Status::kOk;
-}
-
-/// The range of triangles' middles.
-template <class P, class EachId>
-[[nodiscard]] Status find_middles(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records, EachId&& each_id,
-                                  QuadBox& range) {
-  FourBoxes middles = FourBoxes::none();
-  const auto add = [&middles, &transfers](const FourBoxes& boxes, const std::uint32_t*,
-                                          std::uint32_t) GRIDIRON_INLINE_LAMBDA {
-    transfers.add_work(BuildWork::kMiddleGroup);
+/// Collects the range of triangles' middles.
+class MiddleBounds {
+ public:
+  GRIDIRON_INLINE void add(const FourBoxes& boxes) {
     const QuadRows middle = {boxes.low.x + boxes.high.x, boxes.low.y + boxes.high.y, boxes.low.z + boxes.high.z};
-    middles.add({middle, middle});
-  };
-  GRIDIRON_TRY(for_each_boxes(transfers, ring, records, BuildWork::kMiddleGroup, each_id, add));
-  range = QuadBox::around(middles);
-  return Status::kOk;
-}
+    middles_.add({middle, middle});
+  }
+  [[nodiscard]] QuadBox range() const { return QuadBox::around(middles_); }
 
-/// Calls use(code, id) for triangles with their codes on a lattice, without kTreeCodedAgain. use() -> Status.
-template <class P, class EachId, class Use>
-[[nodiscard]] Status for_each_code(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records,
-                                   const TreeCurve& curve, EachId&& each_id, Use&& use) {
-  Status status = Status::kOk;
-  const auto code = [&](const FourBoxes& boxes, const std::uint32_t* ids, std::uint32_t count) GRIDIRON_INLINE_LAMBDA {
-    transfers.add_work(BuildWork::kAgainGroup);
-    std::uint32_t codes[4];
-    codes_of_four(curve, boxes, codes);
-    for (std::uint32_t k = 0; k < count && status == Status::kOk; ++k) {
-      status = use(codes[k], ids[k]);
-    }
-  };
-  GRIDIRON_TRY(for_each_boxes(transfers, ring, records, BuildWork::kAgainGroup, each_id, code));
-  return status;
-}
+ private:
+  FourBoxes middles_ = FourBoxes::none();
+};
 
 /// Up to how many keys are sorted by small digits.
 inline constexpr std::uint32_t kFewRunKeys = 512;
 
-/// Codes triangles again in the store. @param keys  `key` of each has the id of its triangle, in order; gets the new
-/// one. `again` is lost.
-template <class Layout, class P>
-[[nodiscard]] Status code_again(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records, SortedKey* keys,
+/// Codes triangles again in the store.
+///
+/// @param each_boxes  each_boxes(use) calls use(boxes, count) -> Status for all triangles in fours, in order. -> Status
+/// @param keys        get their new codes and their ids, sorted, in `again`; `key` is lost.
+template <class Layout, class P, class EachBoxes>
+[[nodiscard]] Status code_again(BuildTransfers<P>& transfers, EachBoxes&& each_boxes, BucketKey* keys,
                                 std::uint32_t count, std::uint32_t* counts) {
-  const auto number = [&] {
-    for (std::uint32_t i = 0; i < count; ++i) keys[i].key = numbered(i, keys[i].key.id());
-  };
-  if (count <= kFewTreeTriangles) {
-    number();
-    return Status::kOk;
-  }
-  const auto each_id = [&](auto&& push) -> Status {
-    for (std::uint32_t i = 0; i < count; ++i) GRIDIRON_TRY(push(keys[i].key.id()));
+  MiddleBounds middles;
+  const auto add = [&](const FourBoxes& boxes, std::uint32_t) GRIDIRON_INLINE_LAMBDA {
+    transfers.add_work(BuildWork::kAgainGroup);
+    middles.add(boxes);
     return Status::kOk;
   };
-  QuadBox middles;
-  GRIDIRON_TRY(find_middles(transfers, ring, records, each_id, middles));
-  const TreeCurve curve(middles);
+  GRIDIRON_TRY(each_boxes(add));
+  const TreeCurve curve(middles.range());
   if (curve.is_flat()) {
-    number();
+    for (std::uint32_t i = 0; i < count; ++i) keys[i].again = numbered(i, keys[i].key.id());
     return Status::kOk;
   }
   std::uint32_t next = 0;
-  GRIDIRON_TRY(for_each_code(transfers, ring, records, curve, each_id,
-                             [&](std::uint32_t code, std::uint32_t id) GRIDIRON_INLINE_LAMBDA {
-                               keys[next++].again = TreeKey::of(code | kTreeCodedAgain, id);
-                               return Status::kOk;
-                             }));
+  const auto code = [&](const FourBoxes& boxes, std::uint32_t n) GRIDIRON_INLINE_LAMBDA {
+    transfers.add_work(BuildWork::kAgainGroup);
+    std::uint32_t codes[4];
+    codes_of_four(curve, boxes, codes);
+    for (std::uint32_t k = 0; k < n; ++k) {
+      keys[next].again = TreeKey::of(codes[k] | kTreeCodedAgain, keys[next].key.id());
+      ++next;
+    }
+    return Status::kOk;
+  };
+  GRIDIRON_TRY(each_boxes(code));
   constexpr std::uint32_t kFew = Layout::kFewDigitBits, kMany = Layout::kDigitBits;
   const bool is_in_key = count <= kFewRunKeys
                              ? sort_run<kFew, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts, transfers)
                              : sort_run<kMany, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts, transfers);
-  if (is_in_key) return Status::kOk;
-  for (std::uint32_t i = 0; i < count; ++i) keys[i].key = keys[i].again;
+  if (!is_in_key) return Status::kOk;
+  for (std::uint32_t i = 0; i < count; ++i) keys[i].again = keys[i].key;
   return Status::kOk;
 }
 
 /// Sorts more keys than the store holds: goes through all of them for each share that it holds.
 ///
 /// @param each   each(visit) calls visit(code, id) -> Status for all keys, in the order that equal codes keep.
-/// @param flag   of all codes.
 /// @param emit   emit(keys, count) -> Status takes sorted keys, `key` of each.
-/// @param keys   Layout::kBucketKeys.
+/// @param keys   `room` of them.
 template <class Layout, class P, class Each, class Emit>
-[[nodiscard]] Status sort_far(BuildTransfers<P>& transfers, std::uint32_t count, std::uint32_t flag, SortedKey* keys,
+[[nodiscard]] Status sort_far(BuildTransfers<P>& transfers, std::uint32_t count, BucketKey* keys, std::uint32_t room,
                               std::uint32_t* counts, Each&& each, Emit&& emit) {
-  constexpr std::uint32_t kDigit = Layout::kDigitBits, kValues = 1u << kDigit, kRoom = Layout::kBucketKeys;
+  constexpr std::uint32_t kDigit = Layout::kDigitBits, kValues = 1u << kDigit;
   std::uint32_t low = 0;  // codes below are done
   // Each share has a key at least.
   for (std::uint32_t done = 0; done < count;) {
@@ -161,7 +144,7 @@ template <class Layout, class P, class Each, class Emit>
         return Status::kOk;
       }));
       std::uint32_t sum = 0, value = 0;
-      for (; value < (1u << (bits - shift)) && sum + counts[value] <= kRoom; ++value) sum += counts[value];
+      for (; value < (1u << (bits - shift)) && sum + counts[value] <= room; ++value) sum += counts[value];
       if (sum > 0) {
         end = start + (value << shift);
         break;
@@ -179,11 +162,11 @@ template <class Layout, class P, class Each, class Emit>
     std::uint32_t taken = 0;
     GRIDIRON_TRY(each([&](std::uint32_t code, std::uint32_t id) -> Status {
       if (code < low || code >= end) return Status::kOk;
-      keys[taken++].key = TreeKey::of(code | flag, id);
-      if (!is_one_code || taken < kRoom) return Status::kOk;
+      keys[taken++].key = TreeKey::of(code, id);
+      if (!is_one_code || taken < room) return Status::kOk;
       done += taken;
       taken = 0;
-      return emit(keys, kRoom);
+      return emit(keys, room);
     }));
     if (!is_one_code && sort_run<kDigit, 2>(&keys->key, &keys->again, taken, kTreeCodeBits, counts, transfers)) {
       for (std::uint32_t i = 0; i < taken; ++i) keys[i].key = keys[i].again;
@@ -195,79 +178,224 @@ template <class Layout, class P, class Each, class Emit>
   return Status::kOk;
 }
 
-/// Marks the first and the last `again` of a crowd, so that a part of one is not taken for the whole: where many
+/// Marks `again` of the first and the last of a crowd, so that a part of one is not taken for the whole: where many
 /// triangles are split by their number, a cut may go through a crowd.
-inline constexpr std::uint64_t kCrowdEnd = 1u << kTreeCodeBits;
+inline constexpr std::uint32_t kCrowdEnd = 1u << kTreeCodeBits;
+/// Whether a range of one code is a crowd that stands in the order of `again` but is not split by it yet.
 [[nodiscard]] inline bool is_crowd(const SortedKey& first, const SortedKey& last) {
-  return (first.key.bits & kTreeCodedAgain) == 0 && (first.again.bits & last.again.bits & kCrowdEnd) != 0;
+  return (first.code & kTreeCodedAgain) == 0 && (first.again & last.again & kCrowdEnd) != 0;
 }
-/// The key that follows `key` once its crowd is coded again.
-[[nodiscard]] inline TreeKey again_of(const SortedKey& key) {
-  return {key.again.bits & ~kCrowdEnd};
+/// The code by which a triangle of a crowd is split.
+[[nodiscard]] inline std::uint32_t again_of(const SortedKey& key) {
+  return key.again & ~kCrowdEnd;
 }
 
-/// Buffers for keys that are too many for the store.
-struct FarBuffers {
-  static constexpr std::uint32_t kKeys = 64;
-  alignas(128) std::byte read[2 * window_bytes<SortedKey>(kKeys)];
-  alignas(128) std::byte written[window_bytes<SortedKey>(kKeys)];
+/// Memory of what goes through triangles that lie in main memory.
+template <class Layout>
+struct FarStore {
+  static constexpr std::uint32_t kRecords = Layout::kRecordWindow;  // at once
+
+  RecordRing ring;
+  RecordBuffers<kRecords> sent;
+  alignas(128) std::byte records[2 * window_bytes<VertexTriangle>(kRecords)];
+  alignas(128) std::byte keys[2 * window_bytes<SortedKey>(kRecords)];
+  alignas(128) std::byte changed[window_bytes<SortedKey>(kRecords)];
 };
 
-/// Changes sorted keys [first, first + count) in main memory. @param change  change(key, number from first on).
-/// @param buffer  of window_bytes<SortedKey>(room).
-template <class P, class Change>
-[[nodiscard]] Status change_far(BuildTransfers<P>& transfers, std::byte* buffer, std::uint32_t room, MainAddress sorted,
-                                std::uint64_t first, std::uint32_t count, Change&& change) {
-  for (std::uint32_t at = 0; at < count; at += room) {
-    const std::uint32_t n = count - at < room ? count - at : room;
-    const Window<SortedKey> window(buffer, sorted, first + at);
-    GRIDIRON_TRY(window.get(transfers, n, kSetupTag));
-    GRIDIRON_TRY(transfers.wait(kSetupTag));
-    transfers.add_work(BuildWork::kGatheredKey, n);
-    for (std::uint32_t i = 0; i < n; ++i) change(window.elements()[i], at + i);
-    GRIDIRON_TRY(window.put(transfers, n, kSetupTag));
-    GRIDIRON_TRY(transfers.wait(kSetupTag));
-  }
-  return Status::kOk;
-}
-template <class P, class Change>
-[[nodiscard]] Status change_far(BuildTransfers<P>& transfers, FarBuffers& buffers, MainAddress sorted,
-                                std::uint64_t first, std::uint32_t count, Change&& change) {
-  return change_far(transfers, buffers.written, FarBuffers::kKeys, sorted, first, count, change);
-}
-
-/// Writes `again` of sorted keys [begin, end) that have one code, in main memory.
-/// @param keys  Layout::kBucketKeys, whose contents are lost.
+/// Gives triangles of one code another order where they lie: sorted keys and records. Slow: for crowds that no store
+/// holds, and for trees so deep that crowds are cut in parts.
 template <class Layout, class P>
-[[nodiscard]] Status code_again_far(BuildTransfers<P>& transfers, RecordRing& ring, FarBuffers& buffers,
-                                    const BuildPlan& plan, std::uint32_t begin, std::uint32_t end, SortedKey* keys,
-                                    std::uint32_t* counts) {
-  const std::uint32_t count = end - begin;
-  const auto each_id = [&](auto&& push) -> Status {
-    return for_each_window<SortedKey, FarBuffers::kKeys>(
-        transfers, buffers.read, plan.sorted, begin, end, kFirstMacroTag,
-        [&push](const SortedKey* window, std::uint64_t, std::uint32_t n) -> Status {
-          for (std::uint32_t i = 0; i < n; ++i) GRIDIRON_TRY(push(window[i].key.id()));
-          return Status::kOk;
-        });
-  };
-  QuadBox middles;
-  GRIDIRON_TRY(find_middles(transfers, ring, plan.raw_records, each_id, middles));
-  const TreeCurve curve(middles);
-  if (count <= kFewTreeTriangles || curve.is_flat()) {
-    return change_far(transfers, buffers, plan.sorted, begin, count,
-                      [](SortedKey& key, std::uint32_t i) { key.again = numbered(i, key.key.id()); });
+class FarOrder {
+ public:
+  /// @param share  room for `room` keys. @param counts  of sort_run().
+  FarOrder(BuildTransfers<P>& transfers, FarStore<Layout>& store, const BuildPlan& plan, BucketKey* share,
+           std::uint32_t room, std::uint32_t* counts)
+      : transfers_(transfers), store_(store), plan_(plan), share_(share), room_(room), counts_(counts) {}
+
+  /// Codes a crowd again whose keys have the places of its records among those of the runs. The new codes come to
+  /// stand in `again`.
+  [[nodiscard]] Status code_crowd(std::uint32_t begin, std::uint32_t count) {
+    result_ = Result::kCrowd;
+    source_ = plan_.raw_records;
+    target_ = plan_.input.records;
+    return code(begin, count);
   }
-  std::uint64_t place = begin;
-  return sort_far<Layout>(
-      transfers, count, kTreeCodedAgain, keys, counts,
-      [&](auto&& visit) { return for_each_code(transfers, ring, plan.raw_records, curve, each_id, visit); },
-      [&](const SortedKey* share, std::uint32_t n) -> Status {
-        const std::uint64_t first = place;
-        place += n;
-        return change_far(transfers, buffers, plan.sorted, first, n,
-                          [share](SortedKey& key, std::uint32_t i) { key.again = share[i].key; });
-      });
-}
+  /// Codes triangles again when all are sorted; the new codes take the place of the old ones.
+  [[nodiscard]] Status code_again(std::uint32_t begin, std::uint32_t count) {
+    GRIDIRON_TRY(begin_sorted(begin, count, Result::kAgain));
+    return code(begin, count);
+  }
+  /// Restores the order that triangles of one code had before they were coded again as a crowd: that of their ids.
+  [[nodiscard]] GRIDIRON_RARE Status restore(std::uint32_t begin, std::uint32_t count) {
+    GRIDIRON_TRY(begin_sorted(begin, count, Result::kRestored));
+    next_ = 0;
+    const auto take = [this](const VertexTriangle& record, std::uint32_t) { return put_code(record.triangle_id); };
+    GRIDIRON_TRY(each_record(take));
+    return sort();
+  }
+
+ private:
+  static constexpr std::uint32_t kRecords = FarStore<Layout>::kRecords;
+  // What a key becomes.
+  enum class Result : std::uint8_t { kCrowd, kAgain, kRestored };
+
+  [[nodiscard]] static std::uint32_t at_most(std::uint32_t count) { return count < kRecords ? count : kRecords; }
+
+  // The records of runs are not needed any more: their place takes the records of another order.
+  [[nodiscard]] Status begin_sorted(std::uint32_t begin, std::uint32_t count, Result result) {
+    begin_ = begin;
+    count_ = count;
+    result_ = result;
+    source_ = plan_.input.records;
+    target_ = plan_.raw_records;
+    return change_keys([begin](SortedKey& key, std::uint32_t i) { key.place = begin + i; });
+  }
+
+  [[nodiscard]] GRIDIRON_RARE Status code(std::uint32_t begin, std::uint32_t count) {
+    begin_ = begin;
+    count_ = count;
+    const bool are_few = count <= kFewTreeTriangles;
+    MiddleBounds middles;
+    const auto add = [&](const FourBoxes& boxes, std::uint32_t) {
+      transfers_.add_work(BuildWork::kAgainGroup);
+      middles.add(boxes);
+      return Status::kOk;
+    };
+    if (!are_few) GRIDIRON_TRY(each_boxes(add));
+    const TreeCurve curve(middles.range());
+    if (are_few || curve.is_flat()) {
+      return change_keys([this](SortedKey& key, std::uint32_t i) { key = key_of(key.code, i, key.area, i); });
+    }
+    next_ = 0;
+    const auto put_codes = [&](const FourBoxes& boxes, std::uint32_t n) -> Status {
+      transfers_.add_work(BuildWork::kAgainGroup);
+      std::uint32_t codes[4];
+      codes_of_four(curve, boxes, codes);
+      for (std::uint32_t k = 0; k < n; ++k) GRIDIRON_TRY(put_code(codes[k]));
+      return Status::kOk;
+    };
+    GRIDIRON_TRY(each_boxes(put_codes));
+    return sort();
+  }
+
+  [[nodiscard]] SortedKey key_of(std::uint32_t code, std::uint32_t again, float area, std::uint32_t number) const {
+    if (result_ == Result::kRestored) return {code, 0, area, 0};
+    again |= kTreeCodedAgain;
+    // Whether a part of a crowd is split by the old codes or by the new ones.
+    if (result_ == Result::kAgain) return {again, again, area, 0};
+    const bool is_end = number == 0 || number == count_ - 1;
+    return {code, is_end ? again | kCrowdEnd : again, area, 0};
+  }
+
+  template <class Use>
+  [[nodiscard]] Status each_key(Use&& use) {
+    return for_each_window<SortedKey, kRecords>(transfers_, store_.keys, plan_.sorted, begin_,
+                                                std::uint64_t{begin_} + count_, kFirstMacroTag,
+                                                [&](const SortedKey* keys, std::uint64_t, std::uint32_t n) -> Status {
+                                                  transfers_.add_work(BuildWork::kGatheredKey, n);
+                                                  for (std::uint32_t i = 0; i < n; ++i) GRIDIRON_TRY(use(keys[i]));
+                                                  return Status::kOk;
+                                                });
+  }
+  // Calls take(record, place) for all triangles in their order.
+  template <class Take>
+  [[nodiscard]] Status each_record(Take& take) {
+    RecordTaker<P, Take> taker(transfers_, store_.ring, source_, take);
+    const auto push = [&taker](const SortedKey& key) { return taker.push(key.place); };
+    GRIDIRON_TRY(each_key(push));
+    return taker.end();
+  }
+  template <class Use>
+  [[nodiscard]] Status each_boxes(Use& use) {
+    BoxQuads<Use> quads(use, count_);
+    return each_record(quads);
+  }
+
+  // Changes all keys. @param change  change(key, number).
+  template <class Change>
+  [[nodiscard]] Status change_keys(Change&& change) {
+    for (std::uint32_t at = 0; at < count_; at += kRecords) {
+      const std::uint32_t n = at_most(count_ - at);
+      GRIDIRON_TRY(get_changed(at));
+      transfers_.add_work(BuildWork::kGatheredKey, n);
+      for (std::uint32_t i = 0; i < n; ++i) change(changed(at).elements()[i], at + i);
+      GRIDIRON_TRY(put_changed(at));
+    }
+    return Status::kOk;
+  }
+  // The key of the next triangle gets the code by which it is sorted.
+  [[nodiscard]] Status put_code(std::uint32_t code) {
+    const std::uint32_t i = next_ % kRecords, at = next_ - i;
+    if (i == 0) GRIDIRON_TRY(get_changed(at));
+    SortedKey& key = changed(at).elements()[i];
+    code_ = key.code;
+    key.again = code;
+    ++next_;
+    return i + 1 == kRecords || next_ == count_ ? put_changed(at) : Status::kOk;
+  }
+  [[nodiscard]] Window<SortedKey> changed(std::uint32_t at) const {
+    return {store_.changed, plan_.sorted, std::uint64_t{begin_} + at};
+  }
+  [[nodiscard]] Status get_changed(std::uint32_t at) {
+    GRIDIRON_TRY(changed(at).get(transfers_, at_most(count_ - at), kSetupTag));
+    return transfers_.wait(kSetupTag);
+  }
+  [[nodiscard]] Status put_changed(std::uint32_t at) {
+    GRIDIRON_TRY(changed(at).put(transfers_, at_most(count_ - at), kSetupTag));
+    return transfers_.wait(kSetupTag);
+  }
+
+  // Sorts by `again`: records go to the target, and keys and records from there to their final places.
+  [[nodiscard]] Status sort() {
+    const auto each = [this](auto&& visit) -> Status {
+      return each_key([&visit](const SortedKey& key) { return visit(key.again, key.place); });
+    };
+    std::uint32_t sorted = begin_;
+    const auto emit = [&](const BucketKey* share, std::uint32_t n) -> Status {
+      RecordWriter<P, kRecords> writer(transfers_, store_.sent, target_, sorted, kFirstOutputTag);
+      const BucketKey* next = share;
+      const auto take = [&](const VertexTriangle& record, std::uint32_t) -> Status {
+        // Its code comes back in a reserved word.
+        const std::uint32_t code = next++->key.code();
+        return writer.write(record, with_code(third_quad(record), code));
+      };
+      transfers_.add_work(BuildWork::kSortedRecord, n);
+      RecordTaker<P, decltype(take)> taker(transfers_, store_.ring, source_, take);
+      for (std::uint32_t i = 0; i < n; ++i) GRIDIRON_TRY(taker.push(share[i].key.id()));
+      GRIDIRON_TRY(taker.end());
+      sorted += n;
+      return writer.end();
+    };
+    GRIDIRON_TRY(sort_far<Layout>(transfers_, count_, share_, room_, counts_, each, emit));
+    return take_back();
+  }
+  [[nodiscard]] Status take_back() {
+    RecordWriter<P, kRecords> writer(transfers_, store_.sent, plan_.input.records, begin_, kFirstOutputTag);
+    const auto take = [&](const VertexTriangle* records, std::uint64_t first, std::uint32_t n) -> Status {
+      const auto at = static_cast<std::uint32_t>(first) - begin_;
+      transfers_.add_work(BuildWork::kSortedRecord, n);
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const VertexTriangle& record = records[i];
+        changed(at).elements()[i] = key_of(code_, record.reserved[1], area_of(corner_quads(record)), at + i);
+        GRIDIRON_TRY(writer.write(record, final_quad(third_quad(record))));
+      }
+      return put_changed(at);
+    };
+    GRIDIRON_TRY((for_each_window<VertexTriangle, kRecords>(transfers_, store_.records, target_, begin_,
+                                                            std::uint64_t{begin_} + count_, kFirstMacroTag, take)));
+    return writer.end();
+  }
+
+  BuildTransfers<P>& transfers_;
+  FarStore<Layout>& store_;
+  const BuildPlan& plan_;
+  BucketKey* share_;
+  std::uint32_t room_;
+  std::uint32_t* counts_;
+  MainAddress source_{}, target_{};
+  std::uint32_t begin_ = 0, count_ = 0, next_ = 0;
+  std::uint32_t code_ = 0;  // that all had
+  Result result_ = Result::kAgain;
+};
 
 }  // namespace gridiron

@@ -7,6 +7,7 @@
 #include <gridiron/build/passes/build_plan.h>
 #include <gridiron/build/passes/pass_sort.h>
 #include <gridiron/build/passes/pass_tools.h>
+#include <gridiron/build/passes/record_stream.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_curve.h>
 #include <gridiron/build/tree/tree_order.h>
@@ -42,6 +43,14 @@ struct RunSort {
   alignas(16) std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
 };
 
+/// A line of vertices that is in the store. A quadword, as a core looks up and stores no less.
+struct alignas(16) HeldLine {
+  std::uint32_t number;  // + 1; 0: none
+  std::uint32_t user;    // the last chunk that asked for it
+  std::uint32_t reserved[2];
+};
+static_assert(sizeof(HeldLine) == 16);
+
 template <class Layout>
 struct CodesStore {
   static constexpr std::uint32_t kCorners = 3 * Layout::kChunkTriangles;
@@ -61,8 +70,7 @@ struct CodesStore {
   alignas(128) std::uint32_t samples[kMostRunSamples];
   alignas(128) RunPart part;
   alignas(128) std::byte vertex_parts[2 * window_bytes<CornerBox>(kPartWindow)];
-  std::uint32_t lines_held[Layout::kCacheLines];   // line + 1; 0: none
-  std::uint32_t line_users[Layout::kCacheLines];   // the last chunk that asked for it
+  alignas(16) HeldLine held[Layout::kCacheLines];
   alignas(16) std::uint32_t corners[2][kCorners];  // of a chunk's triangles: bytes from lines on
 };
 
@@ -71,12 +79,16 @@ template <class Layout, class P>
 class RunCoder {
  public:
   RunCoder(BuildTransfers<P>& transfers, CodesStore<Layout>& store, const BuildPlan& plan, const TreeCurve& curve)
-      : transfers_(transfers), store_(store), plan_(plan), curve_(curve) {}
+      : transfers_(transfers), store_(store), plan_(plan), curve_(curve) {
+    const std::uint64_t bytes = plan.input.vertex_count * std::uint64_t{kVertexBytes};
+    whole_lines_ = static_cast<std::uint32_t>(bytes / kLineBytes);
+    rest_bytes_ = round_up(static_cast<std::uint32_t>(bytes % kLineBytes), std::uint32_t{kPortableGranuleBytes});
+  }
 
   /// Errors: kBadIndex.
   [[nodiscard]] Status code(std::uint32_t run) {
-    const std::uint64_t first = std::uint64_t{run} * kRun, rest = plan_.input.triangle_count - first;
-    const std::uint32_t count = rest < kRun ? static_cast<std::uint32_t>(rest) : kRun;
+    const std::uint64_t first = std::uint64_t{run} * plan_.run_triangles, rest = plan_.input.triangle_count - first;
+    const std::uint32_t count = rest < plan_.run_triangles ? static_cast<std::uint32_t>(rest) : plan_.run_triangles;
     const std::uint32_t chunks = (count + kChunk - 1) / kChunk;
     bounds_ = FourBoxes::none();
     all_codes_ = Lanes<4>::Int::splat(0);
@@ -84,7 +96,7 @@ class RunCoder {
     kept_ = 0;
     // What the run before has left is not used: transfers of an item depend on nothing but the item.
     clock_ = 2;
-    for (std::uint32_t i = 0; i < Layout::kCacheLines; ++i) store_.lines_held[i] = store_.line_users[i] = 0;
+    for (HeldLine& line : store_.held) line = {};
     const auto chunk_count = [count](std::uint32_t chunk) {
       return count - chunk * kChunk < kChunk ? count - chunk * kChunk : kChunk;
     };
@@ -100,7 +112,7 @@ class RunCoder {
   }
 
  private:
-  static constexpr std::uint32_t kRun = Layout::kRunTriangles, kChunk = Layout::kChunkTriangles;
+  static constexpr std::uint32_t kChunk = Layout::kChunkTriangles;
   static constexpr std::uint32_t kLines = Layout::kCacheLines;
   static constexpr std::uint8_t kIndexTag = kFirstMacroTag, kCornerTag = kFirstTriangleTag;  // and the next
   static constexpr std::uint8_t kKeysTag = kFirstOutputTag + 4, kPartTag = kKeysTag + 1;     // records: four before
@@ -141,14 +153,21 @@ class RunCoder {
       const L::Int words = (index << 1) + index, lines = words >> 5;
       static_assert(kVertexWords == 3 && kLineWords == 32);
       // Of those that end in the next line none is taken to be here.
-      const std::uint32_t inner =
-          ((words & L::Int::splat(kLineWords - 1)) < L::Int::splat(kLineWords - kVertexWords + 1)).bits();
+      const std::uint32_t outer =
+          (L::Int::splat(kLineWords - kVertexWords) < (words & L::Int::splat(kLineWords - 1))).bits();
       ((words & L::Int::splat(kLines * kLineWords - 1)) << 2).store(corners + i);
+      const L::Float numbers = L::floats_of(lines + L::Int::splat(1)), clock = L::floats_of(L::Int::splat(clock_));
+      const L::Int quads[4] = {L::words_of(L::shuffle_quads<0, 4, 4, 4>(numbers, clock)),
+                               L::words_of(L::shuffle_quads<1, 4, 4, 4>(numbers, clock)),
+                               L::words_of(L::shuffle_quads<2, 4, 4, 4>(numbers, clock)),
+                               L::words_of(L::shuffle_quads<3, 4, 4, 4>(numbers, clock))};
       for (std::uint32_t k = 0; k < 4 && k < rest; ++k) {
         const auto line = static_cast<std::uint32_t>(lines[static_cast<int>(k)]);
-        const std::uint32_t slot = line % kLines;
-        if (store_.lines_held[slot] == line + 1 && (inner >> k & 1u) != 0) {
-          store_.line_users[slot] = clock_;
+        auto* const held = reinterpret_cast<std::uint32_t*>(&store_.held[line % kLines]);
+        const auto number = static_cast<std::uint32_t>(L::Int::load(held)[0]);
+        // One branch for both.
+        if (((number ^ (line + 1)) | (outer >> k & 1u)) == 0) {
+          quads[k].store(held);
         } else {
           GRIDIRON_TRY(ask_for(indices[i + k], chunk, i + k));
           transfers_.charge_to(BuildWork::kCorner);
@@ -162,28 +181,36 @@ class RunCoder {
     transfers_.add_work(BuildWork::kMissedCorner);
     const std::uint32_t word = (index << 1) + index;
     const std::uint32_t first = word / kLineWords, last = (word + kVertexWords - 1) / kLineWords;
-    // Whether this chunk or the one before needs what is in their places; and of the last place the next is not behind.
-    const auto is_taken = [this](std::uint32_t line) {
-      const std::uint32_t slot = line % kLines;
-      return store_.lines_held[slot] != line + 1 && store_.line_users[slot] + 1 >= clock_;
+    std::uint32_t& place = store_.corners[chunk % 2][corner];
+    if (first == last) {
+      // It is not here. This chunk or the one before may need what is in its place.
+      if (store_.held[first % kLines].user + 1 >= clock_) return ask_for_lone(index, chunk, corner);
+      place = word % (kLines * kLineWords) * 4;
+      return get_line(first, chunk);
+    }
+    // Of the last place the next one is not behind.
+    const auto is_here = [this](std::uint32_t line) { return store_.held[line % kLines].number == line + 1; };
+    const auto is_taken = [&](std::uint32_t line) {
+      return !is_here(line) && store_.held[line % kLines].user + 1 >= clock_;
     };
     if (is_taken(first) || is_taken(last) || last % kLines < first % kLines) return ask_for_lone(index, chunk, corner);
-    store_.corners[chunk % 2][corner] = word % (kLines * kLineWords) * 4;
-    GRIDIRON_TRY(get_line(first, chunk));
-    return last == first ? Status::kOk : get_line(last, chunk);
+    place = word % (kLines * kLineWords) * 4;
+    for (const std::uint32_t line : {first, last}) {
+      if (is_here(line)) {
+        store_.held[line % kLines].user = clock_;
+      } else {
+        GRIDIRON_TRY(get_line(line, chunk));
+      }
+    }
+    return Status::kOk;
   }
-  // Gets a line of vertices, if it is not here.
+  // Gets a line of vertices that is not here.
   [[nodiscard]] GRIDIRON_INLINE Status get_line(std::uint32_t line, std::uint32_t chunk) {
     const std::uint32_t slot = line % kLines;
-    store_.line_users[slot] = clock_;
-    if (store_.lines_held[slot] == line + 1) return Status::kOk;
-    store_.lines_held[slot] = line + 1;
-    const std::uint64_t begin = std::uint64_t{line} * kLineBytes;
-    const std::uint64_t rest = plan_.input.vertex_count * std::uint64_t{kVertexBytes} - begin;
-    const std::uint32_t bytes = rest < kLineBytes
-                                    ? round_up(static_cast<std::uint32_t>(rest), std::uint32_t{kPortableGranuleBytes})
-                                    : std::uint32_t{kLineBytes};
-    return transfers_.get(store_.lines[slot], plan_.input.vertices.offset_by(begin), bytes, corner_tag(chunk));
+    words_quad(line + 1, clock_, 0, 0).store(&store_.held[slot].number);
+    const std::uint32_t bytes = line < whole_lines_ ? std::uint32_t{kLineBytes} : rest_bytes_;
+    return transfers_.get(store_.lines[slot], plan_.input.vertices.offset_by(std::uint64_t{line} * kLineBytes), bytes,
+                          corner_tag(chunk));
   }
   [[nodiscard]] static std::uint8_t corner_tag(std::uint32_t chunk) {
     return static_cast<std::uint8_t>(kCornerTag + chunk % 2);
@@ -244,16 +271,15 @@ class RunCoder {
       VertexTriangle* const sent = store_.sort.sent[chunk % 4];
       GRIDIRON_TRY(transfers_.wait(record_tag(chunk)));
       transfers_.add_work(BuildWork::kSortedRecord, count);
-      for (std::uint32_t i = 0; i < count; ++i) {
-        using Int = Lanes<4>::Int;
-        const auto* const from = reinterpret_cast<const std::uint32_t*>(store_.records.all + sorted[begin + i].id());
-        auto* const to = reinterpret_cast<std::uint32_t*>(sent + i);
-        const Int first = Int::load(from), second = Int::load(from + 4), third = Int::load(from + 8);
-        first.store(to);
-        second.store(to + 4);
-        third.store(to + 8);
-      }
-      GRIDIRON_TRY(put_records(sent, std::uint64_t{run} * kRun + begin, count, record_tag(chunk)));
+      const auto copy = [&](std::uint32_t i, auto group) GRIDIRON_INLINE_LAMBDA {
+        for (std::uint32_t k = 0; k < group.value; ++k) {
+          const TreeKey key = sorted[begin + i + k];
+          const VertexTriangle& record = store_.records.all[key.id()];
+          copy_record(record, with_code(third_quad(record), key.code()), sent[i + k]);
+        }
+      };
+      for_each_group(count, copy);
+      GRIDIRON_TRY(put_records(sent, std::uint64_t{run} * plan_.run_triangles + begin, count, record_tag(chunk)));
     }
     return Status::kOk;
   }
@@ -266,7 +292,8 @@ class RunCoder {
     static_assert(offsetof(CodesStore<Layout>, lines) == 0);
     return reinterpret_cast<const std::byte*>(&store_);
   }
-  // Until its leaf is made, a record has the triangle's area in the place of its first reserved word.
+  // Until it is in its final place, a record has the triangle's area in the place of its first reserved word, and where
+  // runs have sorted records its code in the second.
   static GRIDIRON_INLINE void write_record(const CornerQuads& corners, std::uint32_t id, float area,
                                            VertexTriangle& record) {
     using L = Lanes<4>;
@@ -310,13 +337,13 @@ class RunCoder {
                                                              store_.sort.counts, transfers_);
     const TreeKey* const sorted = is_in_spare ? store_.sort.spare : store_.keys;
     if (kept_ > 0) {
-      GRIDIRON_TRY(transfers_.put(sorted, plan_.run_keys.offset_by(std::uint64_t{run} * kRun * sizeof(TreeKey)),
-                                  round_up(kept_ * static_cast<std::uint32_t>(sizeof(TreeKey)), kPortableGranuleBytes),
-                                  kKeysTag));
+      GRIDIRON_TRY(transfers_.put(
+          sorted, plan_.run_keys.offset_by(std::uint64_t{run} * plan_.run_triangles * sizeof(TreeKey)),
+          round_up(kept_ * static_cast<std::uint32_t>(sizeof(TreeKey)), kPortableGranuleBytes), kKeysTag));
     }
     if (run % plan_.sampled_runs == 0) {
       // In the middle of equal shares; of places behind the last key there is none.
-      const std::uint32_t step = kRun / plan_.run_samples;
+      const std::uint32_t step = plan_.run_triangles / plan_.run_samples;
       std::uint32_t* const samples = store_.samples;
       for (std::uint32_t i = 0; i < plan_.run_samples; ++i) {
         const std::uint32_t place = i * step + step / 2;
@@ -342,7 +369,8 @@ class RunCoder {
   FourBoxes bounds_ = FourBoxes::none();
   Lanes<4>::Int all_codes_ = Lanes<4>::Int::splat(0), same_codes_ = all_codes_;  // bits that any, and that all have
   std::uint32_t kept_ = 0;
-  std::uint32_t clock_ = 2;  // chunks, plus two
+  std::uint32_t clock_ = 2;                         // chunks, plus two
+  std::uint32_t whole_lines_ = 0, rest_bytes_ = 0;  // of vertices
 };
 
 /// The lattice of all triangles' middles, from the bounds of vertices.

@@ -9,13 +9,14 @@ namespace gridiron {
 
 template <class Layout>
 struct CutsStore {
-  static constexpr std::uint32_t kSplitters = Layout::kBucketKeys < 4096 ? 256 : 1024;  // at once
-  static constexpr std::uint32_t kKeys = Layout::kBucketKeys < 4096 ? 128 : 512;
+  static constexpr std::uint32_t kSplitters = Layout::kSortsRecords ? 1024 : 256;  // at once
+  static constexpr std::uint32_t kKeys = Layout::kSortsRecords ? 512 : 128;
 
   alignas(128) std::byte keys[2 * window_bytes<TreeKey>(kKeys)];
   alignas(128) std::byte splitters[window_bytes<std::uint32_t>(kSplitters)];
   alignas(128) std::uint32_t cuts[kSplitters][kRunGroup];
   alignas(128) RunPart parts[kRunGroup];
+  alignas(128) BuildState state;
 };
 
 /// Writes cuts: of bucket and run, the number of the run's keys below the bucket. Items: groups of runs.
@@ -28,8 +29,9 @@ template <class Layout, class P>
     GRIDIRON_TRY(transfers.get(store.parts, plan.run_parts.offset_by(first_run * std::uint64_t{sizeof(RunPart)}),
                                runs * static_cast<std::uint32_t>(sizeof(RunPart)), kSetupTag));
     // Of all rows: one for each bucket, and the end.
-    for (std::uint32_t first = 0; first <= plan.bucket_room; first += Store::kSplitters) {
-      const std::uint32_t left = plan.bucket_room + 1 - first;
+    const std::uint32_t rows = store.state.bucket_count + 1;
+    for (std::uint32_t first = 0; first < rows; first += Store::kSplitters) {
+      const std::uint32_t left = rows - first;
       const std::uint32_t count = left < Store::kSplitters ? left : Store::kSplitters;
       const Window<std::uint32_t> window(store.splitters, plan.splitters, first);
       GRIDIRON_TRY(window.get(transfers, count, kSetupTag));
@@ -41,20 +43,20 @@ template <class Layout, class P>
       }
       for (std::uint32_t k = 0; k < runs; ++k) {
         const std::uint32_t key_count = store.parts[k].count;
-        const std::uint64_t base = std::uint64_t{first_run + k} * Layout::kRunTriangles;
+        const std::uint64_t base = std::uint64_t{first_run + k} * plan.run_triangles;
         std::uint32_t next = 0;  // splitter
         GRIDIRON_TRY((for_each_window<TreeKey, Store::kKeys>(
             transfers, store.keys, plan.run_keys, base, base + key_count, kFirstMacroTag,
             [&](const TreeKey* keys, std::uint64_t at, std::uint32_t n) {
               const auto before = static_cast<std::uint32_t>(at - base);
               const std::uint32_t last = keys[n - 1].code();
-              transfers.charge_to(BuildWork::kSearchStep);
+              transfers.charge_to(BuildWork::kCutStep);
               // At most all splitters, in all windows of a run together.
               for (; next < count && splitters[next] <= last; ++next) {
                 std::uint32_t low = 0;
                 for (std::uint32_t size = n; size > 0;) {
                   const std::uint32_t half = (size + 1) / 2;
-                  transfers.add_work(BuildWork::kSearchStep);
+                  transfers.add_work(BuildWork::kCutStep);
                   low += keys[low + half - 1].code() < splitters[next] ? half : std::uint32_t{0};
                   size -= half;
                 }
@@ -72,6 +74,7 @@ template <class Layout, class P>
     }
     return transfers.wait(kFirstOutputTag);
   };
+  GRIDIRON_TRY(fetch(transfers, store.state, plan.state));
   return for_each_item(transfers, plan.run_stride / kRunGroup, cut_group);
 }
 

@@ -158,7 +158,7 @@ class TreeJoiner {
     };
     const auto first_window = [&](const Piece& piece, std::uint32_t i) {
       return Window<std::uint32_t>(store_.numbers[i], plan_.level_firsts,
-                                   std::uint64_t{piece.bucket} * 16 + piece.depth - 1);
+                                   std::uint64_t{piece.bucket_number()} * 16 + piece.depth - 1);
     };
     for (std::uint32_t i = 0; i < from.child_count; ++i) {
       if ((from.children[i] & TopNode::kTop) != 0 || piece_of(i).depth == 0) continue;

@@ -8,6 +8,7 @@
 #include <gridiron/dma/transfers.h>
 
 #include <cstdint>
+#include <type_traits>
 
 namespace gridiron {
 
@@ -18,6 +19,15 @@ inline constexpr std::uint32_t kDigitsAtOnce = 2;
 /// Words of counts that sort_run() needs, aligned to 16 bytes.
 template <std::uint32_t kDigitBits>
 inline constexpr std::uint32_t kSortCounts = (kDigitsAtOnce * kCountWords) << kDigitBits;
+
+/// Calls use(first, group) for keys [0, count) in groups: `group.value` of them, a constant.
+template <class Use>
+GRIDIRON_INLINE void for_each_group(std::uint32_t count, Use&& use) {
+  static constexpr std::uint32_t kGroup = 4;
+  std::uint32_t i = 0;
+  for (; count - i >= kGroup; i += kGroup) use(i, std::integral_constant<std::uint32_t, kGroup>{});
+  for (; i < count; ++i) use(i, std::integral_constant<std::uint32_t, 1>{});
+}
 
 /// Sorts keys by one or two digits of their codes, the lower one first.
 /// @returns whether the sorted keys are in `to`, else in `from`.
@@ -33,11 +43,15 @@ GRIDIRON_INLINE bool sort_by_digits(TreeKey* from, TreeKey* to, std::uint32_t co
     std::uint32_t* const place = counts + value * kCountWords;
     (Int::load(place) + Int::splat(1)).store(place);
   };
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t code = from[i * kStride].code() >> shift;
-    count_one(code % kValues);
-    if (digits > 1) count_one(kValues + (code >> kDigitBits) % kValues);
-  }
+  // Several keys at a time, so that their loads do not wait for the counts of the ones before.
+  const auto count_keys = [&](std::uint32_t first, auto group) GRIDIRON_INLINE_LAMBDA {
+    std::uint32_t codes[group.value];
+    for (std::uint32_t k = 0; k < group.value; ++k) codes[k] = from[(first + k) * kStride].code() >> shift;
+    for (std::uint32_t k = 0; k < group.value; ++k) count_one(codes[k] % kValues);
+    if (digits == 1) return;
+    for (std::uint32_t k = 0; k < group.value; ++k) count_one(kValues + (codes[k] >> kDigitBits) % kValues);
+  };
+  for_each_group(count, count_keys);
   for (std::uint32_t digit = 0; digit < digits; ++digit) {
     transfers.charge_to(BuildWork::kSortCount);
     // The number of keys before each value in the place of that of keys that have it.
@@ -49,13 +63,17 @@ GRIDIRON_INLINE bool sort_by_digits(TreeKey* from, TreeKey* to, std::uint32_t co
       sum = sum + here;
     }
     transfers.charge_to(BuildWork::kMovedKey);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const TreeKey key = from[i * kStride];
-      std::uint32_t* const next = places + (key.code() >> shift) % kValues * kCountWords;
-      const Int place = Int::load(next);
-      (place + Int::splat(1)).store(next);
-      to[static_cast<std::uint32_t>(place[0]) * kStride] = key;
-    }
+    const auto move_keys = [&](std::uint32_t first, auto group) GRIDIRON_INLINE_LAMBDA {
+      TreeKey keys[group.value];
+      for (std::uint32_t k = 0; k < group.value; ++k) keys[k] = from[(first + k) * kStride];
+      for (const TreeKey key : keys) {
+        std::uint32_t* const next = places + (key.code() >> shift) % kValues * kCountWords;
+        const Int place = Int::load(next);
+        (place + Int::splat(1)).store(next);
+        to[static_cast<std::uint32_t>(place[0]) * kStride] = key;
+      }
+    };
+    for_each_group(count, move_keys);
     TreeKey* const sorted = to;
     to = from;
     from = sorted;

@@ -1,5 +1,5 @@
-// Fetches the records of triangles by their places, ahead of their use.
-// Memory: a RecordRing of the store. Threads: one core. SPDX-License-Identifier: Apache-2.0
+// Records of triangles, read by their places ahead of their use, and written one after another.
+// Memory: borrowed. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>
@@ -25,110 +25,28 @@ struct RecordRing {
   [[nodiscard]] static GRIDIRON_INLINE std::uint8_t tag_of(std::uint32_t number) {
     return static_cast<std::uint8_t>(kFirstTriangleTag + number % kSpans / kGroup);
   }
-  // Congruent with the place in main memory.
-  [[nodiscard]] GRIDIRON_INLINE std::byte* place_of(std::uint32_t number, std::uint32_t first) {
-    static_assert(sizeof(VertexTriangle) % kPortableCongruenceBytes == kPortableGranuleBytes);
-    return spans[number % kSpans] + (first & 1u) * kPortableGranuleBytes;
-  }
 };
 
-/// A queue of records. Places that follow one another closely, as those of neighbours in a sorted run do, share a
-/// transfer. Uses tags from kFirstTriangleTag on.
-template <class P>
-class RecordStream {
- public:
-  RecordStream(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records)
-      : transfers_(transfers), ring_(ring), records_(records) {}
-
-  [[nodiscard]] GRIDIRON_INLINE bool is_empty() const { return popped_ == pushed_; }
-  /// Whether push() has to wait for a pop().
-  [[nodiscard]] GRIDIRON_INLINE bool is_full() const { return back_ - front_ >= RecordRing::kSpans - 1; }
-  /// Begins anew. Precondition: is_empty().
-  void reset() { pushed_ = popped_ = back_ = front_ = open_count_ = left_ = 0; }
-
-  /// Asks for the record at a place. Precondition: !is_full(). The record popped last is lost.
-  [[nodiscard]] GRIDIRON_INLINE Status push(std::uint32_t place) {
-    transfers_.add_work(BuildWork::kAskedRecord);
-    ++pushed_;
-    if (place - open_first_ >= open_room_) {
-      GRIDIRON_TRY(close());
-      open_first_ = open_last_ = place;
-      open_room_ = RecordRing::kSpan;
-      open_count_ = 1;
-      return Status::kOk;
-    }
-    open_last_ = place > open_last_ ? place : open_last_;
-    ++open_count_;
-    return Status::kOk;
-  }
-  /// Takes the record that was asked for first. Precondition: !is_empty(). @param place  that was pushed.
-  [[nodiscard]] GRIDIRON_INLINE Status pop(std::uint32_t place, const VertexTriangle*& record) {
-    if (left_ == 0) GRIDIRON_TRY(begin_span());
-    ++popped_;
-    --left_;
-    record = front_records_ + (place - front_first_);
-    return Status::kOk;
-  }
-
- private:
-  // Sends for the last span, if there is one that is not under way.
-  [[nodiscard]] Status close() {
-    if (open_count_ == 0) return Status::kOk;
-    transfers_.add_work(BuildWork::kRecordSpan);
-    firsts_[back_ % RecordRing::kSpans] = open_first_;
-    counts_[back_ % RecordRing::kSpans] = open_count_;
-    const std::uint32_t bytes = (open_last_ - open_first_ + 1) * static_cast<std::uint32_t>(sizeof(VertexTriangle));
-    GRIDIRON_TRY(transfers_.get(ring_.place_of(back_, open_first_),
-                                records_.offset_by(std::uint64_t{open_first_} * sizeof(VertexTriangle)), bytes,
-                                RecordRing::tag_of(back_)));
-    ++back_;
-    open_count_ = open_room_ = 0;
-    transfers_.charge_to(BuildWork::kAskedRecord);
-    return Status::kOk;
-  }
-  [[nodiscard]] Status begin_span() {
-    if (front_ == back_) GRIDIRON_TRY(close());
-    GRIDIRON_TRY(transfers_.wait(RecordRing::tag_of(front_)));
-    front_first_ = firsts_[front_ % RecordRing::kSpans];
-    left_ = counts_[front_ % RecordRing::kSpans];
-    front_records_ = reinterpret_cast<const VertexTriangle*>(ring_.place_of(front_, front_first_));
-    ++front_;
-    transfers_.charge_to(BuildWork::kTakenRecord);
-    return Status::kOk;
-  }
-
-  BuildTransfers<P>& transfers_;
-  RecordRing& ring_;
-  MainAddress records_;
-  std::uint32_t pushed_ = 0, popped_ = 0;  // records
-  std::uint32_t back_ = 0, front_ = 0;     // spans sent for, and begun to be taken
-  // The span that is not sent for yet: records, the room from the first place on that it may grow to.
-  std::uint32_t open_first_ = 0, open_last_ = 0, open_room_ = 0, open_count_ = 0;
-  std::uint32_t front_first_ = 0, left_ = 0;  // of the span that is being taken: records
-  const VertexTriangle* front_records_ = nullptr;
-  std::uint32_t firsts_[RecordRing::kSpans] = {}, counts_[RecordRing::kSpans] = {};
-};
-
-/// Calls take(record, place) for records whose places are pushed, in order, as late as possible. Places that follow one
-/// another closely share a transfer.
+/// Calls take(record, place) -> Status for records whose places are pushed, in order, as late as possible. Places that
+/// follow one another closely, as those of neighbours in a sorted run do, share a transfer. Uses tags from
+/// kFirstTriangleTag on.
 template <class P, class Take>
 class RecordTaker {
  public:
-  /// @param kind  of work, that all is charged to.
-  RecordTaker(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records, BuildWork kind, Take& take)
-      : transfers_(transfers), ring_(ring), records_(records), kind_(kind), take_(take) {}
+  RecordTaker(BuildTransfers<P>& transfers, RecordRing& ring, MainAddress records, Take& take)
+      : transfers_(transfers), ring_(ring), records_(records), take_(take) {}
 
-  [[nodiscard]] GRIDIRON_INLINE Status push(std::uint32_t id) {
-    transfers_.charge_to(kind_);
+  [[nodiscard]] GRIDIRON_INLINE Status push(std::uint32_t place) {
+    transfers_.add_work(BuildWork::kAskedRecord);
     Span& span = spans_[back_ % kSpans];
-    if (span.count > 0 && id - span.first < kSpan && span.count < kSpan) {
-      span.wanted[span.count++] = static_cast<std::uint8_t>(id - span.first);
-      span.last = id > span.last ? id : span.last;
+    if (span.count > 0 && place - span.first < kSpan && span.count < kSpan) {
+      span.wanted[span.count++] = static_cast<std::uint8_t>(place - span.first);
+      span.last = place > span.last ? place : span.last;
       return Status::kOk;
     }
     if (span.count > 0) GRIDIRON_TRY(close());
     Span& next = spans_[back_ % kSpans];
-    next.first = next.last = id;
+    next.first = next.last = place;
     next.wanted[0] = 0;
     next.count = 1;
     return Status::kOk;
@@ -152,6 +70,7 @@ class RecordTaker {
   [[nodiscard]] static std::uint8_t tag_of(std::uint32_t number) { return RecordRing::tag_of(number); }
   // Asks for the last span, and makes room for the next one.
   [[nodiscard]] Status close() {
+    transfers_.add_work(BuildWork::kRecordSpan);
     const Span& span = spans_[back_ % kSpans];
     GRIDIRON_TRY(window_of(back_).get(transfers_, span.last - span.first + 1, tag_of(back_)));
     ++back_;
@@ -163,8 +82,11 @@ class RecordTaker {
   [[nodiscard]] Status take_front() {
     const Span& span = spans_[front_ % kSpans];
     GRIDIRON_TRY(transfers_.wait(tag_of(front_)));
+    transfers_.charge_to(BuildWork::kAskedRecord);
     const VertexTriangle* const records = window_of(front_).elements();
-    for (std::uint32_t i = 0; i < span.count; ++i) take_(records[span.wanted[i]], span.first + span.wanted[i]);
+    for (std::uint32_t i = 0; i < span.count; ++i) {
+      GRIDIRON_TRY(take_(records[span.wanted[i]], span.first + span.wanted[i]));
+    }
     ++front_;
     return Status::kOk;
   }
@@ -172,10 +94,163 @@ class RecordTaker {
   BuildTransfers<P>& transfers_;
   RecordRing& ring_;
   MainAddress records_;
-  BuildWork kind_;
   Take& take_;
   Span spans_[kSpans];
   std::uint32_t front_ = 0, back_ = 0;  // numbers of spans; the last one grows
+};
+
+/// The third quadword of a record, and that of a record in its final place: without what passes keep in its reserved
+/// words.
+[[nodiscard]] GRIDIRON_INLINE Lanes<4>::Int third_quad(const VertexTriangle& record) {
+  return Lanes<4>::Int::load(reinterpret_cast<const std::uint32_t*>(&record) + 8);
+}
+[[nodiscard]] GRIDIRON_INLINE Lanes<4>::Int final_quad(Lanes<4>::Int third) {
+  return third & words_quad(~0u, 0, 0, ~0u);
+}
+/// The same with a code in the second reserved word.
+[[nodiscard]] GRIDIRON_INLINE Lanes<4>::Int with_code(Lanes<4>::Int third, std::uint32_t code) {
+  using L = Lanes<4>;
+  return L::words_of(L::shuffle_quads<0, 1, 4, 3>(L::floats_of(third), L::floats_of(L::Int::splat(code))));
+}
+/// Copies a record with another third quadword.
+GRIDIRON_INLINE void copy_record(const VertexTriangle& record, Lanes<4>::Int third, VertexTriangle& copy) {
+  using Int = Lanes<4>::Int;
+  const auto* const from = reinterpret_cast<const std::uint32_t*>(&record);
+  auto* const to = reinterpret_cast<std::uint32_t*>(&copy);
+  const Int first = Int::load(from), second = Int::load(from + 4);
+  first.store(to);
+  second.store(to + 4);
+  third.store(to + 8);
+}
+
+/// Two buffers of records that go to main memory.
+template <std::uint32_t kCount>
+struct RecordBuffers {
+  alignas(128) std::byte bytes[2][window_bytes<VertexTriangle>(kCount)];
+};
+
+/// Writes records one after another. Uses a tag and the next one.
+template <class P, std::uint32_t kCount>
+class RecordWriter {
+ public:
+  /// @param first  place of the first one among `records`.
+  RecordWriter(BuildTransfers<P>& transfers, RecordBuffers<kCount>& buffers, MainAddress records, std::uint64_t first,
+               std::uint8_t tag)
+      : transfers_(transfers), buffers_(buffers), records_(records), sent_(first), tag_(tag) {
+    next_ = window().elements();
+  }
+
+  /// Writes a record with another third quadword.
+  [[nodiscard]] GRIDIRON_INLINE Status write(const VertexTriangle& record, Lanes<4>::Int third) {
+    copy_record(record, third, *next_++);
+    return ++count_ == kCount ? send() : Status::kOk;
+  }
+  /// Room for the next records, at least one; the caller fills it. @param room  of records.
+  [[nodiscard]] VertexTriangle* places(std::uint32_t& room) const {
+    room = kCount - count_;
+    return next_;
+  }
+  /// So many records have been written to places().
+  [[nodiscard]] Status add(std::uint32_t count) {
+    next_ += count;
+    count_ += count;
+    return count_ == kCount ? send() : Status::kOk;
+  }
+  /// Sends what is left.
+  [[nodiscard]] Status send_rest() { return count_ > 0 ? put() : Status::kOk; }
+  /// Sends what is left, and waits for all.
+  [[nodiscard]] Status end() {
+    GRIDIRON_TRY(send_rest());
+    return wait_for(transfers_, tag_, 2);
+  }
+
+ private:
+  [[nodiscard]] Window<VertexTriangle> window() const { return {buffers_.bytes[side_], records_, sent_}; }
+  [[nodiscard]] Status put() { return window().put(transfers_, count_, static_cast<std::uint8_t>(tag_ + side_)); }
+  [[nodiscard]] GRIDIRON_OUTLINE Status send() {
+    GRIDIRON_TRY(put());
+    sent_ += count_;
+    count_ = 0;
+    side_ = 1 - side_;
+    next_ = window().elements();
+    return transfers_.wait(static_cast<std::uint8_t>(tag_ + side_));
+  }
+
+  BuildTransfers<P>& transfers_;
+  RecordBuffers<kCount>& buffers_;
+  MainAddress records_;
+  std::uint64_t sent_;
+  std::uint8_t tag_;
+  std::uint32_t side_ = 0, count_ = 0;
+  VertexTriangle* next_;
+};
+
+/// Buffers of records that are read one after another.
+template <std::uint32_t kCount>
+struct RecordWindows {
+  static constexpr std::uint32_t kWindows = 4;
+  alignas(128) std::byte bytes[kWindows][window_bytes<VertexTriangle>(kCount)];
+};
+
+/// Reads records one after another, their transfers ahead. Uses tags kFirstMacroTag to kFirstMacroTag + 3.
+template <class P, std::uint32_t kCount>
+class RecordReader {
+ public:
+  RecordReader(BuildTransfers<P>& transfers, RecordWindows<kCount>& windows, MainAddress records)
+      : transfers_(transfers), windows_(windows), records_(records) {}
+
+  /// The next ones are records [first, end).
+  [[nodiscard]] Status begin(std::uint32_t first, std::uint32_t end) {
+    next_ = first;
+    end_ = end;
+    return go_on();
+  }
+  /// Precondition: there is one. It is lost with the next but one.
+  [[nodiscard]] GRIDIRON_INLINE Status next(const VertexTriangle*& record) {
+    if (left_ == 0) GRIDIRON_TRY(turn());
+    record = place_++;
+    ++next_;
+    --left_;
+    return Status::kOk;
+  }
+  /// Waits for all transfers; the records change or the memory is used for something else until go_on().
+  [[nodiscard]] Status stop() { return wait_for(transfers_, kFirstMacroTag, kWindows); }
+  [[nodiscard]] Status go_on() {
+    left_ = window_ = 0;
+    asked_ = next_;
+    for (std::uint32_t i = 0; i + 1 < kWindows; ++i) GRIDIRON_TRY(ask(i));
+    return Status::kOk;
+  }
+
+ private:
+  static constexpr std::uint32_t kWindows = RecordWindows<kCount>::kWindows;
+
+  [[nodiscard]] Status ask(std::uint32_t number) {
+    if (asked_ >= end_) return Status::kOk;
+    const Window<VertexTriangle> window(windows_.bytes[number % kWindows], records_, asked_);
+    const std::uint32_t size = size_at(asked_);
+    asked_ += size;
+    return window.get(transfers_, size, tag_of(number));
+  }
+  [[nodiscard]] GRIDIRON_OUTLINE Status turn() {
+    GRIDIRON_TRY(ask(window_ + kWindows - 1));
+    GRIDIRON_TRY(transfers_.wait(tag_of(window_)));
+    place_ = Window<VertexTriangle>(windows_.bytes[window_ % kWindows], records_, next_).elements();
+    left_ = size_at(next_);
+    ++window_;
+    return Status::kOk;
+  }
+  [[nodiscard]] std::uint32_t size_at(std::uint32_t at) const { return end_ - at < kCount ? end_ - at : kCount; }
+  [[nodiscard]] static std::uint8_t tag_of(std::uint32_t number) {
+    return static_cast<std::uint8_t>(kFirstMacroTag + number % kWindows);
+  }
+
+  BuildTransfers<P>& transfers_;
+  RecordWindows<kCount>& windows_;
+  MainAddress records_;
+  std::uint32_t next_ = 0, end_ = 0, asked_ = 0;  // records
+  std::uint32_t window_ = 0, left_ = 0;           // of the current window
+  const VertexTriangle* place_ = nullptr;
 };
 
 }  // namespace gridiron

@@ -11,28 +11,30 @@ namespace gridiron {
 
 template <class Layout>
 struct TopStore {
-  static constexpr std::uint32_t kLineKeys = 8;                                  // of a line of main memory
-  static constexpr std::uint32_t kLines = Layout::kBucketKeys < 4096 ? 16 : 64;  // a power of two
-  static constexpr std::uint32_t kPieces = 16, kBuckets = 16;                    // sent at once
+  static constexpr std::uint32_t kLineKeys = 8;                             // of a line of main memory
+  static constexpr std::uint32_t kLines = Layout::kSortsRecords ? 64 : 16;  // a power of two
+  static constexpr std::uint32_t kPieces = 16, kBuckets = 16;               // sent at once
 
   struct Level {
     TreeRange ranges[kTreeWidth];
     std::uint32_t count, next, number;
+    std::uint32_t crowd_bits;  // of ranges that are split by `again`
     alignas(32) TopNode node;
   };
 
-  alignas(128) SortedKey keys[Layout::kBucketKeys];  // of code_again_far()
+  static constexpr std::uint32_t kSampledKeys = Layout::kSortsRecords ? 256 : 64;
+  alignas(128) BucketKey share[Layout::kFarKeys];
+  alignas(128) std::byte sampled[2 * window_bytes<SortedKey>(kSampledKeys)];
   alignas(128) SortedKey lines[kLines][kLineKeys];
-  alignas(128) std::byte copied[window_bytes<SortedKey>(FarBuffers::kKeys)];
   alignas(128) Piece pieces[2][kPieces];
   alignas(128) SubtreeBucket buckets[2][kBuckets];
   alignas(128) BuildState state;
   alignas(128) TopState top_state;
-  alignas(128) FarBuffers far;
-  RecordRing ring;
+  FarStore<Layout> far;
   Level levels[kMaxTreeDepth];
-  std::uint32_t line_held[kLines];             // line + 1; 0: none
-  std::uint32_t samples[Layout::kTopSamples];  // codes of keys at equal distances
+  TreeRange crowds[kTreeWidth];     // of the node that is split, those that are split by `again`
+  std::uint32_t line_held[kLines];  // line + 1; 0: none
+  std::uint32_t samples[Layout::kTopSamples], samples_again[Layout::kTopSamples];  // of keys at equal distances
   alignas(16) std::uint32_t counts[kSortCounts<Layout::kDigitBits>];
 };
 
@@ -41,7 +43,11 @@ template <class Layout, class P>
 class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
  public:
   TopSplitter(BuildTransfers<P>& transfers, TopStore<Layout>& store, const BuildPlan& plan)
-      : Splits(plan.input.leaf_triangles), transfers_(transfers), store_(store), plan_(plan) {
+      : Splits(plan.input.leaf_triangles),
+        transfers_(transfers),
+        store_(store),
+        plan_(plan),
+        order_(transfers, store.far, plan, store.share, Layout::kFarKeys, store.counts) {
     for (std::uint32_t i = 0; i < TopStore<Layout>::kLines; ++i) store.line_held[i] = 0;
   }
 
@@ -50,9 +56,9 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     GRIDIRON_TRY(take_samples());
     const std::uint32_t whole = whole_count();
     if (whole <= plan_.piece_limit) {
-      GRIDIRON_TRY(add_piece(0, whole, 1));
+      GRIDIRON_TRY(add_piece(0, whole, 1, false));
     } else {
-      GRIDIRON_TRY(open(0, whole));
+      GRIDIRON_TRY(open(0, whole, false));
       // Each turn opens a node, makes a piece or closes a node.
       while (depth_ > 0) GRIDIRON_TRY(step());
     }
@@ -73,12 +79,18 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
 
   // --- Nodes ------------------------------------------------------------------------------------------------------
 
-  // Splits a range that is a node's.
-  [[nodiscard]] Status open(std::uint32_t begin, std::uint32_t end) {
+  // Splits a range that is a node's. @param is_of_crowd  by `again`.
+  [[nodiscard]] Status open(std::uint32_t begin, std::uint32_t end, bool is_of_crowd) {
     GRIDIRON_TRY(transfers_.wait(kNodeTag));  // that was here before
     Level& level = store_.levels[depth_++];
+    is_of_crowd_ = is_of_crowd;
+    crowd_count_ = 0;
     GRIDIRON_TRY(this->split_range(begin, end, depth_, level.ranges, level.count));
     GRIDIRON_TRY(status_);
+    level.crowd_bits = 0;
+    for (std::uint32_t i = 0; i < level.count; ++i) {
+      if (is_in_crowd(level.ranges[i].begin)) level.crowd_bits |= 1u << i;
+    }
     level.next = 0;
     level.number = top_count_++;
     level.node = {};
@@ -96,22 +108,23 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
                             sizeof(TopNode), kNodeTag);
     }
     const TreeRange range = level.ranges[level.next];
+    const bool is_of_crowd = (level.crowd_bits >> level.next & 1u) != 0;
     std::uint32_t& child = level.node.children[level.next++];
     const std::uint32_t size = range.end - range.begin;
     if (range.level < 0) {
       child = piece_count_;
-      return add_piece(range.begin, range.end, 0);
+      return add_piece(range.begin, range.end, 0, is_of_crowd);
     }
     // What is coded again in the store is not split here.
     if (size <= plan_.piece_limit || (range.level == 0 && size <= Layout::kPieceKeys)) {
       child = piece_count_;
-      return add_piece(range.begin, range.end, depth_ + 1);
+      return add_piece(range.begin, range.end, depth_ + 1, is_of_crowd);
     }
     child = top_count_ | TopNode::kTop;
-    return open(range.begin, range.end);
+    return open(range.begin, range.end, is_of_crowd);
   }
 
-  [[nodiscard]] Status add_piece(std::uint32_t begin, std::uint32_t end, std::uint32_t depth) {
+  [[nodiscard]] Status add_piece(std::uint32_t begin, std::uint32_t end, std::uint32_t depth, bool is_of_crowd) {
     if (bucket_.piece_count > 0 && (end - bucket_.begin > plan_.piece_limit || bucket_.piece_count == kBucketPieces)) {
       GRIDIRON_TRY(end_bucket());
     }
@@ -119,7 +132,8 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     ++bucket_.piece_count;
     bucket_.end = end;
     static constexpr std::uint32_t kPieces = TopStore<Layout>::kPieces;
-    store_.pieces[piece_count_ / kPieces % 2][piece_count_ % kPieces] = {begin, end, depth, bucket_count_};
+    store_.pieces[piece_count_ / kPieces % 2][piece_count_ % kPieces] = {
+        begin, end, depth, bucket_count_ | (is_of_crowd ? Piece::kOfCrowd : std::uint32_t{0})};
     ++piece_count_;
     return piece_count_ % kPieces == 0 ? send_pieces() : Status::kOk;
   }
@@ -157,8 +171,22 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
   }
   [[nodiscard]] std::uint32_t whole_count() const { return store_.state.triangle_count; }
 
-  // A key, which may have to be fetched. Errors: status_.
-  [[nodiscard]] std::uint32_t code_of(std::uint32_t i) const { return key_at(i).key.code(); }
+  // Of a key, which may have to be fetched. Errors: status_.
+  [[nodiscard]] std::uint32_t code_of(std::uint32_t i) const {
+    const SortedKey key = key_at(i);
+    return is_in_crowd(i) ? again_of(key) : key.code;
+  }
+  [[nodiscard]] std::uint32_t sample_of(std::uint32_t sample) const {
+    return is_in_crowd(sample * sample_step_) ? store_.samples_again[sample] : store_.samples[sample];
+  }
+  // Whether a key is in a crowd that is split by `again`: that of the node, or one that its own splits have come to.
+  [[nodiscard]] bool is_in_crowd(std::uint32_t i) const {
+    bool is_in = is_of_crowd_;
+    for (std::uint32_t k = 0; k < crowd_count_; ++k) {
+      is_in = is_in || i - store_.crowds[k].begin < store_.crowds[k].end - store_.crowds[k].begin;
+    }
+    return is_in;
+  }
   [[nodiscard]] SortedKey key_at(std::uint32_t i) const {
     static constexpr std::uint32_t kLineKeys = TopStore<Layout>::kLineKeys;
     const std::uint32_t line = i / kLineKeys, slot = line % TopStore<Layout>::kLines;
@@ -193,25 +221,19 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
 
   // Codes of keys at equal distances, to find the middle of a range without fetching keys from all over it.
   [[nodiscard]] Status take_samples() {
-    sample_step_ = TopStore<Layout>::kLineKeys;
-    while (whole_count() / sample_step_ >= Layout::kTopSamples) sample_step_ *= 2;
-    // A line each, as many under way as there is room for.
-    static constexpr std::uint32_t kLines = TopStore<Layout>::kLines;
-    const std::uint32_t count = whole_count() / sample_step_ + (whole_count() % sample_step_ != 0 ? 1u : 0u);
-    static constexpr std::uint32_t kAhead = kTriangleTagCount < kLines ? std::uint32_t{kTriangleTagCount} : kLines;
-    for (std::uint32_t i = 0; i < count + kAhead; ++i) {
-      const auto tag = static_cast<std::uint8_t>(kFirstTriangleTag + i % kAhead);
-      SortedKey* const line = store_.lines[i % kAhead];
-      if (i >= kAhead) {
-        GRIDIRON_TRY(transfers_.wait(tag));
-        store_.samples[i - kAhead] = line[0].key.code();
+    sample_step_ = plan_.sample_step;
+    std::uint32_t next = 0;
+    const auto take = [&](const SortedKey* keys, std::uint64_t, std::uint32_t n) {
+      transfers_.add_work(BuildWork::kGatheredKey, n);
+      for (std::uint32_t i = 0; i < n; ++i, ++next) {
+        store_.samples[next] = keys[i].code;
+        store_.samples_again[next] = again_of(keys[i]);
       }
-      if (i < count) {
-        GRIDIRON_TRY(transfers_.get(line, plan_.sorted.offset_by(std::uint64_t{i} * sample_step_ * sizeof(SortedKey)),
-                                    sizeof(SortedKey), tag));
-      }
-    }
-    return Status::kOk;
+      return Status::kOk;
+    };
+    static constexpr std::uint32_t kKeys = TopStore<Layout>::kSampledKeys;
+    return for_each_window<SortedKey, kKeys>(transfers_, store_.sampled, plan_.sorted_samples, 0,
+                                             (whole_count() + sample_step_ - 1) / sample_step_, kFirstMacroTag, take);
   }
 
   [[nodiscard]] std::uint32_t middle_of(const TreeRange& part) const {
@@ -221,7 +243,7 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
     // The first sample that is like the last key lies at or behind the middle, the one before it in front.
     std::uint32_t low = part.begin / sample_step_ + 1, size = (part.end - 1) / sample_step_ + 1 - low;
     while (size > 0) {
-      const std::uint32_t half = (size + 1) / 2, code = store_.samples[low + half - 1];
+      const std::uint32_t half = (size + 1) / 2, code = sample_of(low + half - 1);
       low += (code ^ first) > (code ^ last) ? std::uint32_t{0} : half;
       size -= half;
     }
@@ -234,59 +256,49 @@ class TopSplitter : private TreeSplits<TopSplitter<Layout, P>> {
 
   // Equal keys of many triangles have their next codes beside them, if the range has all that are equal.
   [[nodiscard]] Status code_again(std::uint32_t begin, std::uint32_t end) {
-    const std::uint32_t count = end - begin;
-    if (count <= kFewTreeTriangles) {
-      GRIDIRON_TRY(change_far(transfers_, store_.far, plan_.sorted, begin, count,
-                              [](SortedKey& key, std::uint32_t i) { key.key = numbered(i, key.key.id()); }));
-    } else {
-      if (!is_crowd(key_at(begin), key_at(end - 1))) {
-        GRIDIRON_TRY((code_again_far<Layout>(transfers_, store_.ring, store_.far, plan_, begin, end, store_.keys,
-                                             store_.counts)));
-      }
-      GRIDIRON_TRY(take_again(begin, count));
+    if (!is_in_crowd(begin) && is_crowd(key_at(begin), key_at(end - 1))) {
+      store_.crowds[crowd_count_++] = {begin, end, 0, 0, 0};
+      return status_;
     }
-    // What is held here is out of date.
-    for (std::uint32_t i = 0; i < TopStore<Layout>::kLines; ++i) store_.line_held[i] = 0;
-    for (std::uint32_t i = (begin + sample_step_ - 1) / sample_step_; i * sample_step_ < end; ++i) {
-      store_.samples[i] = code_of(i * sample_step_);
+    GRIDIRON_TRY(status_);
+    GRIDIRON_TRY(order_.code_again(begin, end - begin));
+    return take_changed(begin, end);
+  }
+  // Only a tree of many levels comes here: its triangles may be gone through one after another.
+  [[nodiscard]] GRIDIRON_RARE Status restore_order(std::uint32_t begin, std::uint32_t end) {
+    if (is_of_crowd_) return Status::kOk;
+    std::uint32_t first = begin;  // of a crowd
+    bool is_open = false;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      if ((key_at(i).again & kCrowdEnd) == 0) continue;
+      GRIDIRON_TRY(status_);
+      if (is_open) {
+        GRIDIRON_TRY(order_.restore(first, i + 1 - first));
+        GRIDIRON_TRY(take_changed(first, i + 1));
+      }
+      is_open = !is_open;
+      first = i;
     }
     return status_;
   }
-
-  // Puts the next codes of keys in the place of the first ones, their transfers before and behind.
-  [[nodiscard]] Status take_again(std::uint32_t begin, std::uint32_t count) {
-    static constexpr std::uint32_t kShares = 4, kKeys = Layout::kBucketKeys / kShares / 2 * 2 - 4;
-    const auto window_of = [&](std::uint32_t share) {
-      auto* const buffer = reinterpret_cast<std::byte*>(store_.keys + share % kShares * (kKeys + 4));
-      return Window<SortedKey>(buffer, plan_.sorted, std::uint64_t{begin} + share * kKeys);
-    };
-    const auto count_of = [count](std::uint32_t share) {
-      return count - share * kKeys < kKeys ? count - share * kKeys : kKeys;
-    };
-    const auto tag_of = [](std::uint32_t share) {
-      return static_cast<std::uint8_t>(kFirstTriangleTag + share % kShares);
-    };
-    const std::uint32_t shares = (count + kKeys - 1) / kKeys;
-    for (std::uint32_t i = 0; i < shares + 2; ++i) {
-      if (i < shares) {
-        GRIDIRON_TRY(transfers_.wait(tag_of(i)));  // what was put from there
-        GRIDIRON_TRY(window_of(i).get(transfers_, count_of(i), tag_of(i)));
-      }
-      if (i < 2) continue;
-      const std::uint32_t share = i - 2;
-      GRIDIRON_TRY(transfers_.wait(tag_of(share)));
-      SortedKey* const keys = window_of(share).elements();
-      transfers_.add_work(BuildWork::kGatheredKey, count_of(share));
-      for (std::uint32_t k = 0; k < count_of(share); ++k) keys[k].key = again_of(keys[k]);
-      GRIDIRON_TRY(window_of(share).put(transfers_, count_of(share), tag_of(share)));
+  // What is held here of such keys is out of date.
+  [[nodiscard]] Status take_changed(std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = 0; i < TopStore<Layout>::kLines; ++i) store_.line_held[i] = 0;
+    for (std::uint32_t i = (begin + sample_step_ - 1) / sample_step_; i * sample_step_ < end; ++i) {
+      const SortedKey key = key_at(i * sample_step_);
+      store_.samples[i] = key.code;
+      store_.samples_again[i] = again_of(key);
     }
-    return wait_for(transfers_, kFirstTriangleTag, kShares);
+    return status_;
   }
 
   BuildTransfers<P>& transfers_;
   TopStore<Layout>& store_;
   const BuildPlan& plan_;
+  FarOrder<Layout, P> order_;
   SubtreeBucket bucket_{};
+  bool is_of_crowd_ = false;
+  std::uint32_t crowd_count_ = 0;
   std::uint32_t depth_ = 0;  // open nodes
   std::uint32_t top_count_ = 0, piece_count_ = 0, bucket_count_ = 0;
   std::uint32_t pieces_sent_ = 0, buckets_sent_ = 0;

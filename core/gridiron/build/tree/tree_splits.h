@@ -29,6 +29,9 @@ enum class SplitWork : std::uint8_t { kPart, kWeighedPart, kSearchStep, kLeaf };
 ///   std::uint32_t middle_of(range)        where a part of level > 0 is split; first_like_last() finds it
 ///   Status code_again(begin, end)         gives keys of one code codes that differ, and sorts them
 ///   std::uint32_t whole_count()           keys in all
+///   Status restore_order(begin, end)      a range will be cut by number: its keys must stand in the order that they
+///   had
+///                                         when those of one code had not been coded again; may be left out
 ///   void count_work(SplitWork, amount)    what follows takes so much more of a kind of work; may be left out
 template <class Self>
 class TreeSplits {
@@ -40,6 +43,7 @@ class TreeSplits {
   [[nodiscard]] GRIDIRON_INLINE Status split_range(std::uint32_t begin, std::uint32_t end, std::uint32_t depth,
                                                    TreeRange* ranges, std::uint32_t& count) {
     if (is_deep(end - begin, depth)) {
+      GRIDIRON_TRY(self().restore_order(begin, end));
       count = split_by_number(begin, end, ranges);
       return Status::kOk;
     }
@@ -49,6 +53,7 @@ class TreeSplits {
 
  protected:
   GRIDIRON_INLINE void count_work(SplitWork, std::uint32_t) const {}
+  [[nodiscard]] static Status restore_order(std::uint32_t, std::uint32_t) { return Status::kOk; }
 
   [[nodiscard]] TreeRange range_of(std::uint32_t begin, std::uint32_t end) const {
     const std::uint32_t size = end - begin;
