@@ -97,7 +97,7 @@ template <class Layout, class P>
           return Status::kOk;
         })));
     const bool is_in_spare =
-        sort_run<Layout::kDigitBits, 1>(store.samples, store.spare, count, kTreeCodeBits, store.counts, transfers);
+        sort_run<1>(store.samples, store.spare, count, Layout::kDigitBits, kTreeCodeBits, store.counts, transfers);
     const TreeKey* const sorted = is_in_spare ? store.spare : store.samples;
     // A sample stands for as many keys as there are for each of them. A code that many samples have does not share a
     // bucket that would become too large with it.

@@ -81,42 +81,75 @@ class MiddleBounds {
 /// Up to how many keys are sorted by small digits.
 inline constexpr std::uint32_t kFewRunKeys = 512;
 
+/// What goes through triangles that are coded again: first for the range of their middles, then for their codes.
+template <class P, class Put>
+class AgainCoder {
+ public:
+  /// @param put  put(code) -> Status takes the codes of triangles in their order.
+  AgainCoder(BuildTransfers<P>& transfers, Put& put) : transfers_(transfers), put_(put) {}
+
+  /// Goes through them. @param each_boxes  each_boxes(use) calls use(boxes, count) -> Status for all in fours. ->
+  /// Status
+  /// @param are_coded  false if all are in one place; then no code was put.
+  template <class EachBoxes>
+  [[nodiscard]] Status code(EachBoxes&& each_boxes, bool& are_coded) {
+    // One call, as it is inlined.
+    for (; turn_ < 2; ++turn_) {
+      GRIDIRON_TRY(each_boxes(*this));
+      if (turn_ == 0) curve_ = TreeCurve(middles_.range());
+      if (curve_.is_flat()) break;
+    }
+    are_coded = !curve_.is_flat();
+    return Status::kOk;
+  }
+  [[nodiscard]] Status operator()(const FourBoxes& boxes, std::uint32_t count) {
+    transfers_.add_work(BuildWork::kAgainGroup);
+    if (turn_ == 0) {
+      middles_.add(boxes);
+      return Status::kOk;
+    }
+    std::uint32_t codes[4];
+    codes_of_four(curve_, boxes, codes);
+    for (std::uint32_t k = 0; k < count; ++k) GRIDIRON_TRY(put_(codes[k]));
+    return Status::kOk;
+  }
+
+ private:
+  BuildTransfers<P>& transfers_;
+  Put& put_;
+  MiddleBounds middles_;
+  TreeCurve curve_{QuadBox{}};
+  std::uint32_t turn_ = 0;
+};
+
+/// Takes codes of triangles into the keys that they are sorted by.
+struct AgainKeys {
+  BucketKey* next;
+
+  [[nodiscard]] GRIDIRON_INLINE Status operator()(std::uint32_t code) {
+    next->again = TreeKey::of(code | kTreeCodedAgain, next->key.id());
+    ++next;
+    return Status::kOk;
+  }
+};
+
 /// Codes triangles again in the store.
 ///
-/// @param each_boxes  each_boxes(use) calls use(boxes, count) -> Status for all triangles in fours, in order. -> Status
+/// @param each_boxes  of AgainCoder::code().
 /// @param keys        get their new codes and their ids, sorted, in `again`; `key` is lost.
 template <class Layout, class P, class EachBoxes>
 [[nodiscard]] Status code_again(BuildTransfers<P>& transfers, EachBoxes&& each_boxes, BucketKey* keys,
                                 std::uint32_t count, std::uint32_t* counts) {
-  MiddleBounds middles;
-  const auto add = [&](const FourBoxes& boxes, std::uint32_t) GRIDIRON_INLINE_LAMBDA {
-    transfers.add_work(BuildWork::kAgainGroup);
-    middles.add(boxes);
-    return Status::kOk;
-  };
-  GRIDIRON_TRY(each_boxes(add));
-  const TreeCurve curve(middles.range());
-  if (curve.is_flat()) {
+  AgainKeys put{keys};
+  AgainCoder<P, AgainKeys> coder(transfers, put);
+  bool are_coded = false;
+  GRIDIRON_TRY(coder.code(each_boxes, are_coded));
+  if (!are_coded) {
     for (std::uint32_t i = 0; i < count; ++i) keys[i].again = numbered(i, keys[i].key.id());
     return Status::kOk;
   }
-  std::uint32_t next = 0;
-  const auto code = [&](const FourBoxes& boxes, std::uint32_t n) GRIDIRON_INLINE_LAMBDA {
-    transfers.add_work(BuildWork::kAgainGroup);
-    std::uint32_t codes[4];
-    codes_of_four(curve, boxes, codes);
-    for (std::uint32_t k = 0; k < n; ++k) {
-      keys[next].again = TreeKey::of(codes[k] | kTreeCodedAgain, keys[next].key.id());
-      ++next;
-    }
-    return Status::kOk;
-  };
-  GRIDIRON_TRY(each_boxes(code));
-  constexpr std::uint32_t kFew = Layout::kFewDigitBits, kMany = Layout::kDigitBits;
-  const bool is_in_key = count <= kFewRunKeys
-                             ? sort_run<kFew, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts, transfers)
-                             : sort_run<kMany, 2>(&keys->again, &keys->key, count, kTreeCodeBits, counts, transfers);
-  if (!is_in_key) return Status::kOk;
+  const std::uint32_t digit_bits = count <= kFewRunKeys ? Layout::kFewDigitBits : Layout::kDigitBits;
+  if (!sort_run<2>(&keys->again, &keys->key, count, digit_bits, kTreeCodeBits, counts, transfers)) return Status::kOk;
   for (std::uint32_t i = 0; i < count; ++i) keys[i].again = keys[i].key;
   return Status::kOk;
 }
@@ -131,18 +164,33 @@ template <class Layout, class P, class Each, class Emit>
                               std::uint32_t* counts, Each&& each, Emit&& emit) {
   constexpr std::uint32_t kDigit = Layout::kDigitBits, kValues = 1u << kDigit;
   std::uint32_t low = 0;  // codes below are done
+  std::uint32_t start = 0, end = 0, bits = 0, shift = 0, taken = 0, done = 0;
+  bool is_counted = false, is_one_code = false;
+  // Counts a digit of the codes that are left, or takes the share. One function for both, as it is inlined.
+  const auto visit = [&](std::uint32_t code, std::uint32_t id) -> Status {
+    if (code < low) return Status::kOk;
+    if (is_counted) {
+      if (code - start < (1u << bits)) ++counts[(code - start) >> shift];
+      return Status::kOk;
+    }
+    if (code >= end) return Status::kOk;
+    keys[taken++].key = TreeKey::of(code, id);
+    if (!is_one_code || taken < room) return Status::kOk;
+    done += taken;
+    taken = 0;
+    return emit(keys, room);
+  };
   // Each share has a key at least.
-  for (std::uint32_t done = 0; done < count;) {
+  while (done < count) {
     // The codes of the share are [low, end), or `low` alone.
-    std::uint32_t start = 0, end = 0, bits = kTreeCodeBits;
-    bool is_one_code = false;
+    start = end = 0;
+    bits = kTreeCodeBits;
+    is_one_code = false;
+    is_counted = true;
     while (end == 0) {
-      const std::uint32_t shift = bits > kDigit ? bits - kDigit : std::uint32_t{0};
+      shift = bits > kDigit ? bits - kDigit : std::uint32_t{0};
       for (std::uint32_t i = 0; i < kValues; ++i) counts[i] = 0;
-      GRIDIRON_TRY(each([&](std::uint32_t code, std::uint32_t) GRIDIRON_INLINE_LAMBDA {
-        if (code >= low && code - start < (1u << bits)) ++counts[(code - start) >> shift];
-        return Status::kOk;
-      }));
+      GRIDIRON_TRY(each(visit));
       std::uint32_t sum = 0, value = 0;
       for (; value < (1u << (bits - shift)) && sum + counts[value] <= room; ++value) sum += counts[value];
       if (sum > 0) {
@@ -159,16 +207,10 @@ template <class Layout, class P, class Each, class Emit>
       }
       bits = shift;
     }
-    std::uint32_t taken = 0;
-    GRIDIRON_TRY(each([&](std::uint32_t code, std::uint32_t id) -> Status {
-      if (code < low || code >= end) return Status::kOk;
-      keys[taken++].key = TreeKey::of(code, id);
-      if (!is_one_code || taken < room) return Status::kOk;
-      done += taken;
-      taken = 0;
-      return emit(keys, room);
-    }));
-    if (!is_one_code && sort_run<kDigit, 2>(&keys->key, &keys->again, taken, kTreeCodeBits, counts, transfers)) {
+    is_counted = false;
+    taken = 0;
+    GRIDIRON_TRY(each(visit));
+    if (!is_one_code && sort_run<2>(&keys->key, &keys->again, taken, kDigit, kTreeCodeBits, counts, transfers)) {
       for (std::uint32_t i = 0; i < taken; ++i) keys[i].key = keys[i].again;
     }
     done += taken;
@@ -254,28 +296,19 @@ class FarOrder {
   [[nodiscard]] GRIDIRON_RARE Status code(std::uint32_t begin, std::uint32_t count) {
     begin_ = begin;
     count_ = count;
-    const bool are_few = count <= kFewTreeTriangles;
-    MiddleBounds middles;
-    const auto add = [&](const FourBoxes& boxes, std::uint32_t) {
-      transfers_.add_work(BuildWork::kAgainGroup);
-      middles.add(boxes);
-      return Status::kOk;
-    };
-    if (!are_few) GRIDIRON_TRY(each_boxes(add));
-    const TreeCurve curve(middles.range());
-    if (are_few || curve.is_flat()) {
-      return change_keys([this](SortedKey& key, std::uint32_t i) { key = key_of(key.code, i, key.area, i); });
-    }
+    bool are_coded = false;
     next_ = 0;
-    const auto put_codes = [&](const FourBoxes& boxes, std::uint32_t n) -> Status {
-      transfers_.add_work(BuildWork::kAgainGroup);
-      std::uint32_t codes[4];
-      codes_of_four(curve, boxes, codes);
-      for (std::uint32_t k = 0; k < n; ++k) GRIDIRON_TRY(put_code(codes[k]));
-      return Status::kOk;
-    };
-    GRIDIRON_TRY(each_boxes(put_codes));
-    return sort();
+    const auto put = [this](std::uint32_t code) { return put_code(code); };
+    AgainCoder<P, decltype(put)> coder(transfers_, put);
+    if (count > kFewTreeTriangles) {
+      const auto each_boxes = [this](auto& use) {
+        BoxQuads quads(use, count_);
+        return each_record(quads);
+      };
+      GRIDIRON_TRY(coder.code(each_boxes, are_coded));
+    }
+    if (are_coded) return sort();
+    return change_keys([this](SortedKey& key, std::uint32_t i) { key = key_of(key.code, i, key.area, i); });
   }
 
   [[nodiscard]] SortedKey key_of(std::uint32_t code, std::uint32_t again, float area, std::uint32_t number) const {
@@ -288,7 +321,7 @@ class FarOrder {
   }
 
   template <class Use>
-  [[nodiscard]] Status each_key(Use&& use) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status each_key(Use&& use) {
     return for_each_window<SortedKey, kRecords>(transfers_, store_.keys, plan_.sorted, begin_,
                                                 std::uint64_t{begin_} + count_, kFirstMacroTag,
                                                 [&](const SortedKey* keys, std::uint64_t, std::uint32_t n) -> Status {
@@ -305,12 +338,6 @@ class FarOrder {
     GRIDIRON_TRY(each_key(push));
     return taker.end();
   }
-  template <class Use>
-  [[nodiscard]] Status each_boxes(Use& use) {
-    BoxQuads<Use> quads(use, count_);
-    return each_record(quads);
-  }
-
   // Changes all keys. @param change  change(key, number).
   template <class Change>
   [[nodiscard]] Status change_keys(Change&& change) {
@@ -346,7 +373,7 @@ class FarOrder {
   }
 
   // Sorts by `again`: records go to the target, and keys and records from there to their final places.
-  [[nodiscard]] Status sort() {
+  [[nodiscard]] GRIDIRON_RARE Status sort() {
     const auto each = [this](auto&& visit) -> Status {
       return each_key([&visit](const SortedKey& key) { return visit(key.again, key.place); });
     };

@@ -332,9 +332,9 @@ class RunCoder {
       all |= static_cast<std::uint32_t>(all_codes_[lane]);
       same &= static_cast<std::uint32_t>(same_codes_[lane]);
     }
-    const bool is_in_spare = sort_run<Layout::kDigitBits, 1>(store_.keys, store_.sort.spare, kept_,
-                                                             static_cast<std::uint32_t>(width_of(all & ~same)),
-                                                             store_.sort.counts, transfers_);
+    const bool is_in_spare =
+        sort_run<1>(store_.keys, store_.sort.spare, kept_, Layout::kDigitBits,
+                    static_cast<std::uint32_t>(width_of(all & ~same)), store_.sort.counts, transfers_);
     const TreeKey* const sorted = is_in_spare ? store_.sort.spare : store_.keys;
     if (kept_ > 0) {
       GRIDIRON_TRY(transfers_.put(

@@ -29,15 +29,23 @@ GRIDIRON_INLINE void for_each_group(std::uint32_t count, Use&& use) {
   for (; i < count; ++i) use(i, std::integral_constant<std::uint32_t, 1>{});
 }
 
+/// @returns how many digits so many bits are, without a division.
+[[nodiscard]] inline std::uint32_t digits_of(std::uint32_t bits, std::uint32_t digit_bits) {
+  std::uint32_t digits = 0;
+  for (std::uint32_t i = 0; i < bits; i += digit_bits) ++digits;
+  return digits;
+}
+
 /// Sorts keys by one or two digits of their codes, the lower one first.
 /// @returns whether the sorted keys are in `to`, else in `from`.
-template <std::uint32_t kDigitBits, std::uint32_t kStride, class P>
-GRIDIRON_INLINE bool sort_by_digits(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t shift,
-                                    std::uint32_t digits, std::uint32_t* counts, BuildTransfers<P>& transfers) {
+template <std::uint32_t kStride, class P>
+GRIDIRON_OUTLINE bool sort_by_digits(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t digit_bits,
+                                     std::uint32_t shift, std::uint32_t digits, std::uint32_t* counts,
+                                     BuildTransfers<P>& transfers) {
   using Int = Lanes<4>::Int;
-  static constexpr std::uint32_t kValues = 1u << kDigitBits;
-  transfers.add_work(BuildWork::kSortCount, digits * kValues);
-  for (std::uint32_t i = 0; i < digits * kValues; ++i) Int::splat(0).store(counts + i * kCountWords);
+  const std::uint32_t values = 1u << digit_bits, last_value = values - 1;
+  transfers.add_work(BuildWork::kSortCount, digits * values);
+  for (std::uint32_t i = 0; i < digits * values; ++i) Int::splat(0).store(counts + i * kCountWords);
   transfers.add_work(BuildWork::kMovedKey, digits * count);
   const auto count_one = [counts](std::uint32_t value) GRIDIRON_INLINE_LAMBDA {
     std::uint32_t* const place = counts + value * kCountWords;
@@ -47,17 +55,17 @@ GRIDIRON_INLINE bool sort_by_digits(TreeKey* from, TreeKey* to, std::uint32_t co
   const auto count_keys = [&](std::uint32_t first, auto group) GRIDIRON_INLINE_LAMBDA {
     std::uint32_t codes[group.value];
     for (std::uint32_t k = 0; k < group.value; ++k) codes[k] = from[(first + k) * kStride].code() >> shift;
-    for (std::uint32_t k = 0; k < group.value; ++k) count_one(codes[k] % kValues);
+    for (std::uint32_t k = 0; k < group.value; ++k) count_one(codes[k] & last_value);
     if (digits == 1) return;
-    for (std::uint32_t k = 0; k < group.value; ++k) count_one(kValues + (codes[k] >> kDigitBits) % kValues);
+    for (std::uint32_t k = 0; k < group.value; ++k) count_one(values + ((codes[k] >> digit_bits) & last_value));
   };
   for_each_group(count, count_keys);
   for (std::uint32_t digit = 0; digit < digits; ++digit) {
     transfers.charge_to(BuildWork::kSortCount);
     // The number of keys before each value in the place of that of keys that have it.
-    std::uint32_t* const places = counts + digit * kValues * kCountWords;
+    std::uint32_t* const places = counts + digit * values * kCountWords;
     Int sum = Int::splat(0);
-    for (std::uint32_t i = 0; i < kValues; ++i) {
+    for (std::uint32_t i = 0; i < values; ++i) {
       const Int here = Int::load(places + i * kCountWords);
       sum.store(places + i * kCountWords);
       sum = sum + here;
@@ -67,7 +75,7 @@ GRIDIRON_INLINE bool sort_by_digits(TreeKey* from, TreeKey* to, std::uint32_t co
       TreeKey keys[group.value];
       for (std::uint32_t k = 0; k < group.value; ++k) keys[k] = from[(first + k) * kStride];
       for (const TreeKey key : keys) {
-        std::uint32_t* const next = places + (key.code() >> shift) % kValues * kCountWords;
+        std::uint32_t* const next = places + ((key.code() >> shift) & last_value) * kCountWords;
         const Int place = Int::load(next);
         (place + Int::splat(1)).store(next);
         to[static_cast<std::uint32_t>(place[0]) * kStride] = key;
@@ -77,7 +85,7 @@ GRIDIRON_INLINE bool sort_by_digits(TreeKey* from, TreeKey* to, std::uint32_t co
     TreeKey* const sorted = to;
     to = from;
     from = sorted;
-    shift += kDigitBits;
+    shift += digit_bits;
   }
   return digits % 2 != 0;
 }
@@ -108,16 +116,16 @@ GRIDIRON_INLINE bool sort_by_exchanges(TreeKey* keys, std::uint32_t count, std::
 /// few; where they are not, digit by digit from the lowest on.
 ///
 /// @param from, to  keys at every kStride'th place; both are changed.
+/// @param digit_bits  of a digit.
 /// @param bits      of the code by which keys differ, 0..kTreeCodeBits; bits above are the same in all.
 /// @param transfers  counts the work.
 /// @returns whether the sorted keys are in `to`, else in `from`.
-template <std::uint32_t kDigitBits, std::uint32_t kStride, class P>
-bool sort_run(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t bits, std::uint32_t* counts,
-              BuildTransfers<P>& transfers) {
-  const std::uint32_t digits = (bits + kDigitBits - 1) / kDigitBits,
-                      tried = digits < kDigitsAtOnce ? digits : kDigitsAtOnce;
-  const std::uint32_t shift = bits > tried * kDigitBits ? bits - tried * kDigitBits : std::uint32_t{0};
-  const bool is_in_to = sort_by_digits<kDigitBits, kStride>(from, to, count, shift, tried, counts, transfers);
+template <std::uint32_t kStride, class P>
+bool sort_run(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t digit_bits, std::uint32_t bits,
+              std::uint32_t* counts, BuildTransfers<P>& transfers) {
+  const std::uint32_t digits = digits_of(bits, digit_bits), tried = digits < kDigitsAtOnce ? digits : kDigitsAtOnce;
+  const std::uint32_t shift = bits > tried * digit_bits ? bits - tried * digit_bits : std::uint32_t{0};
+  const bool is_in_to = sort_by_digits<kStride>(from, to, count, digit_bits, shift, tried, counts, transfers);
   if (shift == 0) return is_in_to;
   TreeKey* const keys = is_in_to ? to : from;
   transfers.add_work(BuildWork::kExchangedKey, count);
@@ -127,8 +135,8 @@ bool sort_run(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t bit
   TreeKey* sorted = keys;
   for (std::uint32_t done = 0; done < digits; done += kDigitsAtOnce) {
     const std::uint32_t left = digits - done;
-    if (sort_by_digits<kDigitBits, kStride>(sorted, spare, count, done * kDigitBits,
-                                            left < kDigitsAtOnce ? left : kDigitsAtOnce, counts, transfers)) {
+    if (sort_by_digits<kStride>(sorted, spare, count, digit_bits, done * digit_bits,
+                                left < kDigitsAtOnce ? left : kDigitsAtOnce, counts, transfers)) {
       TreeKey* const other = sorted;
       sorted = spare;
       spare = other;

@@ -119,7 +119,7 @@ class BucketSorter {
 
   // Calls visit(key) for the keys of a bucket, run by run, their transfers ahead.
   template <class Visit>
-  [[nodiscard]] Status each_key(std::uint32_t bucket, Visit&& visit) {
+  [[nodiscard]] GRIDIRON_OUTLINE Status each_key(std::uint32_t bucket, Visit&& visit) {
     return each_cuts(bucket,
                      [&](const std::uint32_t* begins, const std::uint32_t* ends, std::uint32_t first_run,
                          std::uint32_t count) -> Status {
@@ -225,7 +225,7 @@ class BucketSorter {
   template <bool kHeld>
   [[nodiscard]] Status sort_bucket(BucketKey* keys, std::uint32_t first, std::uint32_t count) {
     const auto differing = static_cast<std::uint32_t>(width_of(all_codes_ & ~same_codes_));
-    if (sort_run<Layout::kDigitBits, 2>(&keys->key, &keys->again, count, differing, store_.counts, transfers_)) {
+    if (sort_run<2>(&keys->key, &keys->again, count, Layout::kDigitBits, differing, store_.counts, transfers_)) {
       for (std::uint32_t i = 0; i < count; ++i) keys[i].key = keys[i].again;
     }
     GRIDIRON_TRY(code_crowds<kHeld>(keys, count));

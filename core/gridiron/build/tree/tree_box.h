@@ -56,7 +56,7 @@ struct QuadBox {
     return {boxes.low.reduced(least), boxes.high.reduced(greatest)};
   }
   /// The box of a node: that of its children's boxes. Those that are not there change nothing.
-  [[nodiscard]] static GRIDIRON_INLINE QuadBox of_node(const TreeNode& node) {
+  [[nodiscard]] static GRIDIRON_OUTLINE QuadBox of_node(const TreeNode& node) {
     using Quad = CornerQuad;
     const auto column = [](const float* sides, auto&& choose) GRIDIRON_INLINE_LAMBDA {
       return choose(choose(Quad::load(sides), Quad::load(sides + 4)),

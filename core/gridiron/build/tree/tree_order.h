@@ -60,7 +60,7 @@ inline constexpr float kTreeLeafDensity = 1.5f;
 /// Stores the boxes of a node's children. @param boxes  kTreeWidth of `low` and `high`; of children that are not there
 /// empty.
 template <class Box>
-GRIDIRON_INLINE void store_child_boxes(const Box* boxes, TreeNode& node) {
+GRIDIRON_OUTLINE void store_child_boxes(const Box* boxes, TreeNode& node) {
   for (std::uint32_t i = 0; i < kTreeWidth; i += 4) {
     CornerQuad lows[4], highs[4];
     for (std::uint32_t k = 0; k < 4; ++k) {
