@@ -24,7 +24,7 @@ struct Row {
   std::uint32_t cores;
   Plan::RunId runs[kSideCount];
   Plan::RunId large_leaves;  ///< the BVH, with hyper-threading, built for frames that build it first
-  Plan::RunId best;          ///< the wide tree, of whose build nothing is counted
+  Plan::RunId best;          ///< the wide tree
 };
 
 /// Of the leaves that were tried, those with the least time for build and frame: sim_platform/README.md.

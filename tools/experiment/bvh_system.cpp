@@ -34,9 +34,11 @@ bvh::BvhFrame render(const bvh::Bvh& bvh, const FrameSettings& settings, bvh::Re
 
 TimedFrame timed(bvh::BvhFrame frame) {
   const auto switches = static_cast<std::size_t>(bvh::BvhWork::kSwitch);
-  return {std::move(frame.timing), CacheFacts{.node_hit_percent = 100 * frame.node_cache.hit_rate(),
-                                              .triangle_hit_percent = 100 * frame.triangle_cache.hit_rate(),
-                                              .suspended_packets = frame.work[switches]}};
+  return {std::move(frame.timing),
+          CacheFacts{.node_hit_percent = 100 * frame.node_cache.hit_rate(),
+                     .triangle_hit_percent = 100 * frame.triangle_cache.hit_rate(),
+                     .suspended_packets = frame.work[switches]},
+          std::nullopt};
 }
 
 class BvhRecording : public Recording {

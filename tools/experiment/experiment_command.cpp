@@ -54,6 +54,8 @@ Experiment experiment_of(ExperimentName name) {
       return {experiment::run_accuracy_experiment, experiment::accuracy_file_names};
     case ExperimentName::kEffects:
       return {experiment::run_effects_experiment, experiment::effects_file_names, {96, 96}};
+    case ExperimentName::kDynamic:
+      return {experiment::run_dynamic_experiment, experiment::dynamic_file_names, {512, 512}};
     case ExperimentName::kPaper:
       break;
   }

@@ -18,7 +18,7 @@ struct ExperimentSettings {
   std::filesystem::path scenes;  ///< folder of scans; empty: none. Effects makes its own.
   std::uint32_t threads = 1;     ///< host threads; change host_*.csv at most
   std::uint32_t width = 1024, height = 1024;
-  std::uint32_t largest_knot = 1'000'000;  ///< triangles of the largest mesh of Table 1; of the paper alone
+  std::uint32_t largest_knot = 1'000'000;  ///< triangles of the largest mesh of Table 1, of dynamic's largest knot
 };
 
 /// The files of an experiment, and the work done for them.
@@ -49,5 +49,10 @@ using ProgressCall = std::function<void(std::uint32_t, std::uint32_t)>;
 [[nodiscard]] ExperimentResult run_effects_experiment(const ExperimentSettings& settings,
                                                       const ProgressCall& progress);
 [[nodiscard]] std::vector<std::string> effects_file_names();
+
+/// What building anew for each frame costs: grid, hierarchy and tree by the general core, the tree by the cores.
+[[nodiscard]] ExperimentResult run_dynamic_experiment(const ExperimentSettings& settings,
+                                                      const ProgressCall& progress);
+[[nodiscard]] std::vector<std::string> dynamic_file_names();
 
 }  // namespace gridiron::experiment

@@ -77,6 +77,11 @@ void Plan::run_frame(const Frame& frame, const std::function<void()>& run_done) 
       result.caches = timed.caches;
       result.build_cycles = sim::build_cycles(run.machine.profile.master, result.facts.build);
       result.build_seconds = sim::build_seconds(run.machine.profile.master, result.facts.build);
+      if (timed.cores_build) {
+        result.build_cycles = timed.cores_build->cycles;
+        result.build_seconds = timed.cores_build->seconds;
+        result.passes = std::move(timed.cores_build->passes);
+      }
     }
     run_done();
   }

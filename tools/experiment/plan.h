@@ -36,7 +36,8 @@ struct RunResult {
   FrameFacts facts;
   sim::FrameTiming timing;
   std::optional<CacheFacts> caches;
-  double build_cycles = 0, build_seconds = 0;  ///< counted steps of the build on the machine's general core
+  double build_cycles = 0, build_seconds = 0;  ///< of the machine's general core; of the cores where these build
+  std::vector<tool::PassFigures> passes;       ///< where the cores build; the picture's last
 
   [[nodiscard]] bool failed() const { return !failure.empty(); }
   /// Frames a second; NaN if the run failed.

@@ -39,6 +39,7 @@ tool::RenderPlan plan_of(const GridVariant& variant, const View& view, const Fra
   plan.accuracy = variant.accuracy;
   plan.shading = request.shading;
   plan.has_depth = variant.depth;
+  plan.builder = variant.builder;
   return plan;
 }
 
@@ -148,15 +149,23 @@ sim::FrameTrace with_late_normals(const sim::FrameTrace& trace, const std::vecto
 
 class GridRecording : public Recording {
  public:
-  GridRecording(FrameFacts facts, sim::FrameTrace trace) : facts_(std::move(facts)), trace_(std::move(trace)) {}
+  /// @param build  no passes where the general core builds.
+  GridRecording(FrameFacts facts, sim::FrameTrace trace, tool::CoresBuild build)
+      : facts_(std::move(facts)), trace_(std::move(trace)), build_(std::move(build)) {}
   [[nodiscard]] const FrameFacts& facts() const override { return facts_; }
   [[nodiscard]] TimedFrame time(const sim::MachineProfile& machine, std::uint32_t core_count) const override {
-    return {sim::replay(trace_, machine, {.core_count = core_count}), std::nullopt};
+    TimedFrame timed{sim::replay(trace_, machine, {.core_count = core_count}), std::nullopt};
+    if (!build_.passes.empty()) {
+      timed.cores_build = tool::cost_of_cores(build_, machine, core_count);
+      tool::add_picture(timed.timing, machine, *timed.cores_build);
+    }
+    return timed;
   }
 
  private:
   FrameFacts facts_;
   sim::FrameTrace trace_;
+  tool::CoresBuild build_;
 };
 
 Contender grid_contender(std::string key, std::string title, std::string hiding, GridVariant variant) {
@@ -181,7 +190,7 @@ Contender tree_contender() {
       "up to " + std::to_string(best.configuration.depths.fetch) + " nodes or leaves under way for each of two tiles",
       best);
   contender.is_grid = false;
-  contender.is_build_counted = false;
+  contender.paper_growth = {};
   return contender;
 }
 
@@ -226,13 +235,12 @@ std::vector<Contender> make_contenders() {
 std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameRequest& request) const {
   PreparedFrame prepared(plan_of(variant_, view, request), view);
   sim::ChipResult result = prepared.render();
-  const tool::FrameMemory& frame = prepared.memory;
+  tool::FrameMemory& frame = prepared.memory;
 
   FrameFacts facts;
+  facts.build = tool::work_of_master(view.mesh(), frame).value_or(sim::BuildWork{});
   const bool has_grid = variant_.configuration.has_grid();
   if (has_grid) {
-    facts.build = sim::grid_build_work(view.mesh().vertices.size(), view.mesh().triangles.size(), frame.need,
-                                       sim::count_mesh_lines(view.mesh().view()));
     facts.traversal_steps = sum_of(result.work, {GridWork::kMacroSliceStep, GridWork::kMacroCellStep,
                                                  GridWork::kSliceStep, GridWork::kCellStep, GridWork::kCellBoundStep});
   } else {
@@ -253,7 +261,8 @@ std::unique_ptr<Recording> GridSystem::record(const View& view, const FrameReque
     const std::vector<std::uint32_t> ids = render_answers(variant_, view, request).ids;
     result.trace = with_late_normals(result.trace, ids, frame.record, variant_.configuration.packet_width);
   }
-  return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace));
+  return std::make_unique<GridRecording>(std::move(facts), std::move(result.trace),
+                                         std::move(prepared.memory.cores_build));
 }
 
 Answers render_answers(const GridVariant& variant, const View& view, const FrameRequest& request) {

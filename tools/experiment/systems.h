@@ -20,6 +20,7 @@
 #include "experiment/answers.h"
 #include "experiment/paper_values.h"
 #include "experiment/views.h"
+#include "gridiron/animate/frame_figures.h"
 #include "gridiron/device/configurations.h"
 #include "gridiron/device/machine_file.h"
 
@@ -33,7 +34,7 @@ struct FrameRequest {
 
 /// Facts of a frame that need no clock.
 struct FrameFacts {
-  sim::BuildWork build;                  ///< of the structure; nothing of a tree, whose steps have no prices
+  sim::BuildWork build;                  ///< of the structure by the general core
   std::uint64_t traversal_steps = 0;     ///< steps through the structure, all packets
   std::uint64_t intersection_tests = 0;  ///< (SIMD group, triangle) tests; 0 of tiles, which draw triangles
   std::uint64_t scene_bytes = 0;         ///< structure and triangles in main memory
@@ -58,7 +59,8 @@ struct CacheFacts {
 /// The result of a run on a machine.
 struct TimedFrame {
   sim::FrameTiming timing;
-  std::optional<CacheFacts> caches;  ///< of systems that have them
+  std::optional<CacheFacts> caches;              ///< of systems that have them
+  std::optional<tool::BuildCost> cores_build{};  ///< of systems whose cores build; with the passes, the picture's last
 };
 
 /// A frame that can be timed on any machine: by replay, or by rendering it again.
@@ -89,7 +91,6 @@ struct Contender {
   std::string hiding;                      ///< how `system` hides it, for people
   bool is_grid = true;                     ///< false: a hierarchy
   PaperGrowth paper_growth;                ///< growth of such a structure by the paper's Table 1
-  bool is_build_counted = true;            ///< false: nothing of its build is counted
 };
 
 /// The columns of every table that compares systems.
@@ -109,6 +110,7 @@ struct GridVariant {
   /// Whether a packet fetches the normals of the triangles that it shows, one after another, when it has traced its
   /// rays.
   bool late_normals = false;
+  tool::Builder builder = tool::Builder::kMaster;  ///< of a tree
 };
 
 /// @returns the configuration with that name, e.g. "grid". Precondition: it exists.

@@ -1,7 +1,7 @@
 // Binned build by surface area, merging of pairs to four children, layout in cache lines.
 // Memory: std::vector. Threads: any. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
-#include <gridiron/build/grid/build_step.h>
+#include <gridiron/build/build_step.h>
 #include <gridiron/build/triangle_records.h>
 #include <gridiron/bvh/bvh.h>
 #include <gridiron/sim/machine_profile.h>

@@ -28,8 +28,8 @@ struct BuildWork {
 /// Counting and building the grid: count_scene_image with this result, then build_scene_image.
 ///
 /// @param vertex_count, triangle_count  of the mesh, dropped triangles included.
-/// @param need                          from count_scene_image, of an image with a grid and without a tree: there are
-///                                      no prices yet for the steps of building a tree.
+/// @param need                          from count_scene_image, of an image with a grid and without a tree, whose
+///                                      steps tree_build_work.h counts.
 /// @param lines                         of the mesh.
 [[nodiscard]] BuildWork grid_build_work(std::uint64_t vertex_count, std::uint64_t triangle_count, const GridNeed& need,
                                         const MeshLines& lines);

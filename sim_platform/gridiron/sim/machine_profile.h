@@ -3,7 +3,7 @@
 #pragma once
 
 #include <gridiron/base/work_counters.h>
-#include <gridiron/build/grid/build_step.h>
+#include <gridiron/build/build_step.h>
 #include <gridiron/engine/tree/tile_work.h>
 #include <gridiron/sim/latency.h>
 
@@ -15,9 +15,9 @@
 
 namespace gridiron::sim {
 
-/// Steps of building a scene's data structure that cost time on the general core: those of the grid, then the
-/// hierarchy's. GridStep says what the grid's are. Steps are priced with what they need in the cache; far lines cost
-/// besides.
+/// Steps of building a scene's data structure that cost time on the general core: those of the grid, the tree and the
+/// hierarchy. GridStep and TreeStep say what the first two are. Steps are priced with what they need in the cache; far
+/// lines cost besides.
 enum class BuildStep : std::uint8_t {
   kBuildOnce = static_cast<std::uint8_t>(GridStep::kBuildOnce),
   kVertexCheck = static_cast<std::uint8_t>(GridStep::kVertexCheck),
@@ -42,24 +42,42 @@ enum class BuildStep : std::uint8_t {
   kLatticeSort = static_cast<std::uint8_t>(GridStep::kLatticeSort),
   kLatticeWrite = static_cast<std::uint8_t>(GridStep::kLatticeWrite),
   kLatticeCellSum = static_cast<std::uint8_t>(GridStep::kLatticeCellSum),
-  kFarLine = static_cast<std::uint8_t>(GridStep::kCount),  ///< grid: lines that no cache holds, met out of sequence
-  kBvhOnce,                                                ///< what is done once a build
-  kBvhVertexCheck,                                         ///< vertices checked for NaN and infinity
-  kBvhTriangleSurvey,                                      ///< triangles read: indices, zero area, bounds
-  kBinUpdate,         ///< (triangle, axis) entered into a bin of the surface area heuristic
-  kBinSwept,          ///< bins merged when the splits of a node are priced, there and back
-  kTriangleMoved,     ///< triangles moved to their side of a split, whose bounds of centres they enter
-  kTriangleHalved,    ///< triangles of nodes split in halves, times the bits of their number: selected and sorted
-  kBoxBound,          ///< triangles entered into the bounds of the root or a half: of boxes, of their centres
-  kNodeMade,          ///< nodes of the binary tree, inner and leaf, without what is counted above
-  kNodeMerged,        ///< nodes of four children: merged from pairs
-  kNodePlaced,        ///< the same, laid out in cache lines
-  kNodeWritten,       ///< the same, written
-  kBvhTriangleWrite,  ///< triangle records written
-  kBvhFarLine,        ///< lines that no cache holds, met out of sequence
+  kTreeOnce = static_cast<std::uint8_t>(TreeStep::kOnce),
+  kTreeVertexBound = static_cast<std::uint8_t>(TreeStep::kVertexBound),
+  kTreeTriangleSurvey = static_cast<std::uint8_t>(TreeStep::kTriangleSurvey),
+  kTreeTriangleCode = static_cast<std::uint8_t>(TreeStep::kTriangleCode),
+  kTreeDigitValue = static_cast<std::uint8_t>(TreeStep::kDigitValue),
+  kTreeKeySorted = static_cast<std::uint8_t>(TreeStep::kKeySorted),
+  kTreeKeyScattered = static_cast<std::uint8_t>(TreeStep::kKeyScattered),
+  kTreeLeafSplit = static_cast<std::uint8_t>(TreeStep::kLeafSplit),
+  kTreeNodeSplit = static_cast<std::uint8_t>(TreeStep::kNodeSplit),
+  kTreeCrowd = static_cast<std::uint8_t>(TreeStep::kCrowd),
+  kTreeCrowdKey = static_cast<std::uint8_t>(TreeStep::kCrowdKey),
+  kTreeTriangleWrite = static_cast<std::uint8_t>(TreeStep::kTriangleWrite),
+  kTreeTriangleArea = static_cast<std::uint8_t>(TreeStep::kTriangleArea),
+  kTreeNodeWrite = static_cast<std::uint8_t>(TreeStep::kNodeWrite),
+  kTreeNodeOrder = static_cast<std::uint8_t>(TreeStep::kNodeOrder),
+  kTreeCheckedLine = static_cast<std::uint8_t>(TreeStep::kCheckedLine),
+  kFarLine = static_cast<std::uint8_t>(TreeStep::kCount),  ///< grid: lines that no cache holds, met out of sequence
+  kTreeSurveyFarLine,  ///< the same of the survey of a tree's image, which asks for none ahead
+  kTreeFarLine,        ///< the same of the tree
+  kBvhOnce,            ///< what is done once a build
+  kBvhVertexCheck,     ///< vertices checked for NaN and infinity
+  kBvhTriangleSurvey,  ///< triangles read: indices, zero area, bounds
+  kBinUpdate,          ///< (triangle, axis) entered into a bin of the surface area heuristic
+  kBinSwept,           ///< bins merged when the splits of a node are priced, there and back
+  kTriangleMoved,      ///< triangles moved to their side of a split, whose bounds of centres they enter
+  kTriangleHalved,     ///< triangles of nodes split in halves, times the bits of their number: selected and sorted
+  kBoxBound,           ///< triangles entered into the bounds of the root or a half: of boxes, of their centres
+  kNodeMade,           ///< nodes of the binary tree, inner and leaf, without what is counted above
+  kNodeMerged,         ///< nodes of four children: merged from pairs
+  kNodePlaced,         ///< the same, laid out in cache lines
+  kNodeWritten,        ///< the same, written
+  kBvhTriangleWrite,   ///< triangle records written
+  kBvhFarLine,         ///< lines that no cache holds, met out of sequence
   kCount
 };
-/// Number of steps, of grid and hierarchy.
+/// Number of steps, of grid, tree and hierarchy.
 inline constexpr std::size_t kBuildStepCount = static_cast<std::size_t>(BuildStep::kCount);
 
 /// The general core, which builds the scene image before the cores render it. One core of it works.

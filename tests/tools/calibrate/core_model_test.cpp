@@ -55,6 +55,14 @@ TEST_F(CoreModelTest, ResultsAreWaitedFor) {
   EXPECT_EQ(run({Kind::kFixed, 5, {4}}), kStoreToLoadCycles + kFloatCycles);
 }
 
+TEST_F(CoreModelTest, VectorsShareTheUnitOfFloats) {
+  rest();
+  run({Kind::kVector, 70, {}});
+  EXPECT_EQ(run({Kind::kVector, 71, {70}}), kVectorCycles);
+  run({Kind::kVector, 72, {}});
+  EXPECT_EQ(run({Kind::kFloat, 40, {}}), 1u);
+}
+
 TEST_F(CoreModelTest, DivisionHoldsItsUnitAlone) {
   rest();
   run({Kind::kDivide, 40, {}});
@@ -169,6 +177,18 @@ TEST(RiscvDecoder, ShortInstructions) {
   expect_decoded(0xE588, Kind::kStore, 0, {11, 10, 0});   // c.sd a0, 8(a1)
   expect_decoded(0x8082, Kind::kJump, 0, {1, 0, 0});      // c.jr ra
   expect_decoded(0xC501, Kind::kBranch, 0, {10, 0, 0});   // c.beqz a0
+}
+
+TEST(RiscvDecoder, VectorsHaveRegistersOfTheirOwn) {
+  expect_decoded(0x02946457, Kind::kVector, 72, {0, 73, 0});         // vadd-like: vand.vx v8, v9, s0
+  expect_decoded(0x02941457, Kind::kFloat, 72, {72, 73, 0});         // vfadd.vv v8, v9, v8
+  expect_decoded(0x82941457, Kind::kDivide, 72, {72, 73, 0});        // vfdiv.vv
+  expect_decoded(0x0205E407, Kind::kLoad, 72, {11, 0, 0});           // vle32.v v8, (a1)
+  expect_decoded(0x0205E427, Kind::kStore, 0, {11, 72, 0});          // vse32.v v8, (a1)
+  expect_decoded(0x42802557, Kind::kThroughMemory, 10, {72, 0, 0});  // vmv.x.s a0, v8
+  expect_decoded(0x42055457, Kind::kThroughMemory, 72, {42, 0, 0});  // vfmv.s.f v8, fa0
+  expect_decoded(0x5E054457, Kind::kThroughMemory, 72, {10, 0, 0});  // vmv.v.x v8, a0
+  expect_decoded(0xCD027057, Kind::kWiden, 0, {0, 0, 0});            // vsetivli: lanes are what they are
 }
 
 TEST(RiscvDecoder, MarksAreInstructionsThatDoNothing) {

@@ -208,7 +208,9 @@ TEST(AccuracyExperiment, MistakesAreTold) {
     const char* words;
   } cases[] = {
       {{"experiment", "accuracy"}, 2, "-o DIR is required"},
-      {{"experiment", "accuracy", "-o", "out", "--largest", "6000"}, 2, "--largest: is of experiment paper alone"},
+      {{"experiment", "accuracy", "-o", "out", "--largest", "6000"},
+       2,
+       "--largest: is of experiments paper and dynamic alone"},
       {{"experiment", "accuracy", "-o", "out", "--size", "0x9"}, 2, "WxH"},
       {{"experiment", "accuracy", "-o", "out", "--scenes", "nowhere"}, 1, "nowhere: no such folder"},
       {{"experiment", "accuracy", "-o", "no/such/out"}, 1, "no/such/out"},

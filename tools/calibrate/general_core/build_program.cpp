@@ -1,15 +1,19 @@
 // Builds one structure over one mesh and prints the counted steps of the build. Compiled for riscv64 it is what
 // general_core/run gives to the core model; compiled for the host it tells the processor time.
 //   build_program MESH BUILDER [REPETITIONS]
-// MESH: teapot:SEGMENTS, knot:TRIANGLES, stacked:SEGMENTS or a PLY file. BUILDER: bvh, or grid:LAMBDA:WIDTH:FORMAT.
+// MESH: teapot:SEGMENTS, knot:TRIANGLES, stacked:SEGMENTS, crowded:TRIANGLES or a PLY file. BUILDER: bvh, tree,
+// tree_image, or grid:LAMBDA:WIDTH:FORMAT.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
-#include <gridiron/build/grid/build_step.h>
+#include <gridiron/build/build_step.h>
 #include <gridiron/build/grid/grid_builder.h>
+#include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/bvh/bvh.h>
 #include <gridiron/bvh/bvh_build_work.h>
+#include <gridiron/image/scene_image.h>
 #include <gridiron/io/ply_reader.h>
 #include <gridiron/sim/build_work.h>
 #include <gridiron/sim/mesh_lines.h>
+#include <gridiron/sim/tree_build_work.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -68,6 +72,18 @@ Input stacked(const Input& once) {
   return input;
 }
 
+// A mesh in a corner of a space that is so much larger: many triangles of one code.
+Input crowded(Input input) {
+  constexpr float kShare = 0.25f;
+  for (Vec3& vertex : input.vertices) vertex *= kShare;
+  const auto first = static_cast<std::uint32_t>(input.vertices.size());
+  for (const Vec3& corner : {Vec3(100, 100, 100), Vec3(101, 100, 100), Vec3(100, 101, 100)}) {
+    input.vertices.push_back(corner);
+  }
+  input.triangles.emplace_back(first, first + 1, first + 2);
+  return input;
+}
+
 // The same mesh in an order that says nothing: runs of triangles and of vertices are dealt out anew.
 Input shuffled(const Input& ordered, std::uint32_t run) {
   const auto permutation = [run](std::size_t count) {
@@ -105,6 +121,7 @@ Input input_of(const std::string& name) {
   }
   if (maker == "teapot") return from_maker(scene_makers::make_teapot(number()));
   if (maker == "stacked") return stacked(from_maker(scene_makers::make_teapot(number())));
+  if (maker == "crowded") return crowded(from_maker(scene_makers::make_torus_knot(number())));
   if (maker == "knot") return from_maker(scene_makers::make_torus_knot(number()));
   return from_file(name);
 }
@@ -123,20 +140,60 @@ sim::BuildWork build_hierarchy(const Input& input, const sim::MeshLines& lines) 
   return bvh::bvh_build_work(input.vertices.size(), input.triangles.size(), bvh.counts, lines);
 }
 
-sim::BuildWork build_grid(const Input& input, const sim::MeshLines& lines, const GridParameters& parameters) {
-  GridNeed need{};
+// @returns the image; it is there until the next one.
+std::span<const std::byte> build_image(const Input& input, const GridParameters& parameters, GridNeed& need) {
   Status status = count_scene_image(input.view(), parameters, need);
   leave_steps();
-  if (status != Status::kOk) fail("the grid was not counted");
+  if (status != Status::kOk) fail("the image was not counted");
   // The caller's memory is no part of a build: all repetitions have the same.
-  static std::vector<std::byte> memory;
+  static std::vector<std::byte> memory, scratch;
   memory.resize(need.image_bytes + kLineBytes);
-  std::vector<std::byte> scratch(need.scratch_bytes);
+  scratch.resize(need.scratch_bytes);
   const std::size_t begin = -reinterpret_cast<std::uintptr_t>(memory.data()) % kLineBytes;
-  status = build_scene_image(input.view(), parameters, need, std::span(memory).subspan(begin), scratch);
+  const std::span image = std::span(memory).subspan(begin);
+  status = build_scene_image(input.view(), parameters, need, image, scratch);
   leave_steps();
-  if (status != Status::kOk) fail("the grid was not built");
+  if (status != Status::kOk) fail("the image was not built");
+  return image;
+}
+
+sim::BuildWork build_grid(const Input& input, const sim::MeshLines& lines, const GridParameters& parameters) {
+  GridNeed need{};
+  build_image(input, parameters, need);
   return sim::grid_build_work(input.vertices.size(), input.triangles.size(), need, lines);
+}
+
+sim::BuildWork build_tree_alone(const Input& input, const sim::MeshLines& lines, std::uint32_t leaf_triangles) {
+  const std::size_t count = input.triangles.size();
+  static std::vector<VertexTriangle> records;
+  static std::vector<TreeNode> nodes;
+  static std::vector<std::uint64_t> scratch;
+  records.resize(count);
+  nodes.resize(static_cast<std::size_t>(most_tree_nodes(count, leaf_triangles)));
+  scratch.resize(tree_scratch_bytes(count) / sizeof(std::uint64_t));
+  TreeSize size{};
+  const Status status = build_tree(input.view(), leaf_triangles, records, nodes,
+                                   std::as_writable_bytes(std::span(scratch)), size, TreeOrder::kForAnyHit);
+  leave_steps();
+  if (status != Status::kOk) fail("the tree was not built");
+  return sim::tree_build_work(input.view(),
+                              {leaf_triangles, TreeOrder::kForAnyHit, std::span(nodes).first(size.node_count)}, lines);
+}
+
+sim::BuildWork build_tree_image(const Input& input, const sim::MeshLines& lines, std::uint32_t leaf_triangles) {
+  GridParameters parameters;
+  parameters.has_grid = false;
+  parameters.has_tree = true;
+  parameters.leaf_triangles = leaf_triangles;
+  GridNeed need{};
+  const std::span image = build_image(input, parameters, need);
+  SceneImageView view{};
+  SceneImageError error;
+  if (open_scene_image(image, view, error) != Status::kOk) fail("the image is not valid");
+  const std::span nodes(reinterpret_cast<const TreeNode*>(image.data() + view.tree.nodes_offset_bytes),
+                        view.tree.node_count);
+  return sim::tree_image_work(input.view(), {leaf_triangles, TreeOrder::kByNumber, nodes}, view.header.image_bytes,
+                              lines);
 }
 
 GridParameters parameters_of(const std::string& text) {
@@ -152,6 +209,14 @@ GridParameters parameters_of(const std::string& text) {
   return parameters;
 }
 
+sim::BuildWork build(const std::string& builder, const Input& input, const sim::MeshLines& lines) {
+  constexpr std::uint32_t kLeafTriangles = 8, kImageLeafTriangles = 16;  // as for effects, and as `best` has it
+  if (builder == "bvh") return build_hierarchy(input, lines);
+  if (builder == "tree") return build_tree_alone(input, lines, kLeafTriangles);
+  if (builder == "tree_image") return build_tree_image(input, lines, kImageLeafTriangles);
+  return build_grid(input, lines, parameters_of(builder));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -164,7 +229,7 @@ int main(int argc, char** argv) {
   double least = 1e9;
   for (int i = 0; i < repetitions; ++i) {
     const std::clock_t begin = std::clock();
-    work = builder == "bvh" ? build_hierarchy(input, lines) : build_grid(input, lines, parameters_of(builder));
+    work = build(builder, input, lines);
     least = std::min(least, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
   std::printf("triangles %zu\nseconds %.6f\n", input.triangles.size(), least);

@@ -22,6 +22,7 @@ inline constexpr std::uint32_t kIssueWidth = 2;
 inline constexpr Cycle kFixedCycles = 2;          ///< until a fixed-point result can be used
 inline constexpr Cycle kLoadCycles = 5;           ///< first cache to use; 4 to 5 published
 inline constexpr Cycle kFloatCycles = 10;         ///< float and double alike, compares too
+inline constexpr Cycle kVectorCycles = 4;         ///< of vectors: whole numbers, compares, lanes moved
 inline constexpr Cycle kMultiplyCycles = 9;       ///< of 32 bits
 inline constexpr Cycle kWideMultiplyCycles = 15;  ///< of 64 bits; published: 9 to 15
 inline constexpr Cycle kFixedDivideCycles = 70;   ///< holds its unit; ASSUMED
@@ -58,6 +59,7 @@ enum class Kind : std::uint8_t {
   kWideMultiply,
   kFixedDivide,
   kFloat,
+  kVector,  ///< of vectors, without floats
   kDivide,
   kRoot,
   kThroughMemory,  ///< between fixed and float registers
@@ -70,7 +72,7 @@ enum class Kind : std::uint8_t {
   kFarJump,  ///< to an address in a register
 };
 
-/// Registers are numbers below 64; 0 is no register.
+/// Registers are numbers below 96; 0 is no register.
 struct Instruction {
   Kind kind = Kind::kFixed;
   std::uint8_t result = 0;
@@ -149,6 +151,7 @@ class CoreModel {
       case Kind::kFixedDivide:
         return Unit::kFixed;
       case Kind::kFloat:
+      case Kind::kVector:
       case Kind::kDivide:
       case Kind::kRoot:
         return Unit::kFloat;
@@ -205,6 +208,8 @@ class CoreModel {
         return hold(unit, kFixedDivideCycles);
       case Kind::kFloat:
         return now_ + kFloatCycles;
+      case Kind::kVector:
+        return now_ + kVectorCycles;
       case Kind::kDivide:
         return hold(unit, kDivideCycles);
       case Kind::kRoot:
@@ -319,7 +324,7 @@ class CoreModel {
 
   Cycle now_ = 0;
   std::uint32_t issued_ = 0, units_taken_ = 0;  // in this cycle
-  std::array<Cycle, 64> ready_{};
+  std::array<Cycle, 96> ready_{};
   std::array<Cycle, 5> unit_free_{};
   std::array<Cycle, kFetches> fetch_slots_{}, load_slots_{};
   std::array<Cycle, kStoreQueue> store_left_{};

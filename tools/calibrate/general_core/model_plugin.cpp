@@ -40,7 +40,7 @@ namespace {
 
 using namespace gridiron::general_core;
 
-constexpr std::uint32_t kNoMark = 127, kMarks = 256;  // as in gridiron/build/grid/build_step.h
+constexpr std::uint32_t kNoMark = 127, kMarks = 256;  // as in gridiron/build/build_step.h
 
 struct Step {
   Instruction instruction;

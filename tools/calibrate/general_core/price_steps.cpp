@@ -9,6 +9,7 @@
 //   check      compared with the prices
 #include <gridiron/sim/build_work.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -26,7 +27,12 @@ using namespace gridiron::sim;
 
 constexpr std::size_t kSteps = kBuildStepCount;
 constexpr auto kGridFar = static_cast<std::size_t>(BuildStep::kFarLine);
+constexpr auto kTreeFar = static_cast<std::size_t>(BuildStep::kTreeFarLine);
 constexpr auto kBvhFar = static_cast<std::size_t>(BuildStep::kBvhFarLine);
+
+constexpr auto kSurveyFar = static_cast<std::size_t>(BuildStep::kTreeSurveyFarLine);
+// One that a builder has besides its own comes before it.
+constexpr std::array kFarSteps = {kGridFar, kTreeFar, kSurveyFar, kBvhFar};
 
 struct Sum {
   double units = 0, instructions = 0, cycles = 0, branch_misses = 0, lines_waited = 0, lines_streamed = 0;
@@ -47,8 +53,12 @@ struct Run {
     for (const Sum& step : steps) sum += step.lines_waited;
     return sum;
   }
-  [[nodiscard]] std::size_t far_step() const { return builder == "bvh" ? kBvhFar : kGridFar; }
-  [[nodiscard]] double far_lines() const { return steps[far_step()].units; }
+  /// What its builder's shuffled runs price.
+  [[nodiscard]] std::size_t far_step() const {
+    if (builder == "bvh") return kBvhFar;
+    if (builder == "tree") return kTreeFar;
+    return builder == "tree_image" ? kSurveyFar : kGridFar;
+  }
 };
 
 [[noreturn]] void fail(const std::string& text) {
@@ -94,17 +104,24 @@ void add(const Sum& more, Sum& sum) {
 
 using Prices = std::array<Sum, kSteps>;  // per unit
 
+// Of the far lines that have a price.
+double far_cycles(const Run& run, const Prices& prices) {
+  double cycles = 0;
+  for (const std::size_t far : kFarSteps) cycles += run.steps[far].units * prices[far].cycles;
+  return cycles;
+}
+
 Prices prices_of(const std::vector<Run>& runs) {
   Prices prices{};
   // Far lines: what the same mesh in another order adds.
-  for (const std::size_t far : {kGridFar, kBvhFar}) {
+  for (const std::size_t far : kFarSteps) {
     double cycles = 0, lines = 0;
     for (const Run& run : runs) {
       if (run.role != "shuffled" || run.far_step() != far) continue;
       for (const Run& plain : runs) {
         if (plain.role != "plain" || plain.name != run.name || plain.builder != run.builder) continue;
-        cycles += run.cycles() - plain.cycles();
-        lines += run.far_lines() - plain.far_lines();
+        cycles += run.cycles() - far_cycles(run, prices) - (plain.cycles() - far_cycles(plain, prices));
+        lines += run.steps[far].units - plain.steps[far].units;
       }
     }
     if (lines <= 0) fail("no far lines");
@@ -118,14 +135,14 @@ Prices prices_of(const std::vector<Run>& runs) {
       for (std::size_t step = 0; step < kSteps; ++step) {
         Sum sum = run.steps[step];
         if (run.lines_waited() > 0) {
-          sum.cycles -= run.far_lines() * prices[run.far_step()].cycles * sum.lines_waited / run.lines_waited();
+          sum.cycles -= far_cycles(run, prices) * sum.lines_waited / run.lines_waited();
         }
         add(sum, sums[step]);
       }
     }
     for (std::size_t step = 0; step < kSteps; ++step) {
       const Sum& sum = sums[step];
-      if (step == kGridFar || step == kBvhFar || sum.units == 0 || prices[step].units != 0) continue;
+      if (std::ranges::count(kFarSteps, step) != 0 || sum.units == 0 || prices[step].units != 0) continue;
       prices[step] = {sum.units,
                       sum.instructions / sum.units,
                       sum.cycles / sum.units,
@@ -205,10 +222,10 @@ void print_check(const Prices& prices, const std::vector<Run>& runs) {
                 run.cycles() / kMillion, sum / kMillion, 100 * (sum / run.cycles() - 1), sum / 3.2e6,
                 1e3 * run.host_seconds);
   }
-  std::puts("\n| mesh | grid | BVH / grid: modelled | priced | host |");
+  std::puts("\n| mesh | structure | BVH / structure: modelled | priced | host |");
   std::puts("|---|---|---|---|---|");
   for (const Run& grid : runs) {
-    if (grid.role != "check" || grid.builder == "bvh") continue;
+    if (grid.role != "check" || grid.builder == "bvh" || grid.builder == "tree_image") continue;
     for (const Run& bvh : runs) {
       if (bvh.role != "check" || bvh.builder != "bvh" || bvh.name != grid.name) continue;
       std::printf("| %s | %s | %.2f | %.2f | %.2f |\n", grid.name.c_str(), grid.builder.c_str(),

@@ -1,5 +1,5 @@
-// Instructions of riscv64 as the general core's: RV64GC without atomics' order, as a compiler makes them.
-// Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+// Instructions of riscv64 as the general core's: RV64GC without atomics' order, as a compiler makes them, and vectors
+// of 128 bits. Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace gridiron::general_core {
 
-inline constexpr std::uint8_t kFloatRegister = 32;  ///< float register 0 is this number
+inline constexpr std::uint8_t kFloatRegister = 32;   ///< float register 0 is this number
+inline constexpr std::uint8_t kVectorRegister = 64;  ///< the same of vector registers
 
 /// slti zero, zero, n. @returns n of a mark.
 [[nodiscard]] constexpr std::optional<std::uint32_t> mark_of(std::uint32_t code) {
@@ -51,6 +52,36 @@ constexpr Instruction decode_float(std::uint32_t code) {
   }
 }
 
+constexpr std::uint8_t vector_field(std::uint32_t code, int shift) {
+  return static_cast<std::uint8_t>(kVectorRegister + field(code, shift));
+}
+// Whether loads and stores of float registers are of vectors.
+constexpr bool is_of_vector(std::uint32_t code) {
+  const std::uint8_t width = field(code, 12, 7);
+  return width == 0 || width > 4;
+}
+
+// The vector registers have no way to the others but through memory. A number beside a vector is one that was brought
+// there before a loop.
+constexpr Instruction decode_vector(std::uint32_t code) {
+  enum : std::uint8_t { kFloats = 1, kToScalar = 2, kNumber = 4, kFloat = 5, kToVector = 6, kLength = 7 };
+  const std::uint8_t form = field(code, 12, 7), vd = vector_field(code, 7), vs1 = vector_field(code, 15),
+                     vs2 = vector_field(code, 20);
+  const std::uint32_t function = code >> 26;
+  const bool is_float = form == kFloats || form == kFloat;
+  const bool is_scalar_move = function == 0x10;
+  if (form == kLength) return {Kind::kWiden, 0, {}};  // lanes are what they are
+  if (is_scalar_move && form == kFloats) return {Kind::kThroughMemory, float_field(code, 7), {vs2, 0, 0}};
+  if (is_scalar_move && form == kToScalar) return {Kind::kThroughMemory, field(code, 7), {vs2, 0, 0}};
+  if (is_scalar_move && form == kFloat) return {Kind::kThroughMemory, vd, {float_field(code, 15), 0, 0}};
+  if (is_scalar_move && form == kToVector) return {Kind::kThroughMemory, vd, {field(code, 15), 0, 0}};
+  if (function == 0x17 && (code >> 25 & 1) != 0 && form == kNumber) {
+    return {Kind::kThroughMemory, vd, {field(code, 15), 0, 0}};  // a number in all lanes
+  }
+  if (is_float && function == 0x20) return {Kind::kDivide, vd, {vs1, vs2, 0}};
+  return {is_float ? Kind::kFloat : Kind::kVector, vd, {form <= kToScalar ? vs1 : std::uint8_t{0}, vs2, 0}};
+}
+
 constexpr Instruction decode_long(std::uint32_t code) {
   const std::uint8_t rd = field(code, 7), rs1 = field(code, 15), rs2 = field(code, 20);
   const bool is_word = (code & 8) != 0;
@@ -58,11 +89,11 @@ constexpr Instruction decode_long(std::uint32_t code) {
     case 0x00:
       return {Kind::kLoad, rd, {rs1, 0, 0}};
     case 0x01:
-      return {Kind::kLoad, float_field(code, 7), {rs1, 0, 0}};
+      return {Kind::kLoad, is_of_vector(code) ? vector_field(code, 7) : float_field(code, 7), {rs1, 0, 0}};
     case 0x08:
       return {Kind::kStore, 0, {rs1, rs2, 0}};
     case 0x09:
-      return {Kind::kStore, 0, {rs1, float_field(code, 20), 0}};
+      return {Kind::kStore, 0, {rs1, is_of_vector(code) ? vector_field(code, 7) : float_field(code, 20), 0}};
     case 0x0B:
       return {Kind::kLoad, rd, {rs1, rs2, 0}};  // atomic
     case 0x04:
@@ -86,6 +117,8 @@ constexpr Instruction decode_long(std::uint32_t code) {
           Kind::kFloat, float_field(code, 7), {float_field(code, 15), float_field(code, 20), float_field(code, 27)}};
     case 0x14:
       return decode_float(code);
+    case 0x15:
+      return decode_vector(code);
     case 0x18:
       return {Kind::kBranch, 0, {rs1, rs2, 0}};
     case 0x19:

@@ -3,6 +3,7 @@
 
 #include <gridiron/sim/build_work.h>
 #include <gridiron/sim/pass_timing.h>
+#include <gridiron/sim/tree_build_work.h>
 #include <report/report.h>
 #include <report/svg_plot.h>
 
@@ -31,20 +32,6 @@ PassFigures figures_of(const sim::PassTiming& pass) {
           .bytes_out = pass.bytes_out};
 }
 
-// The passes one after another, then the general core.
-BuildCost cost_of_cores(const CoresBuild& build, const RenderPlan& plan) {
-  const sim::MachineProfile& machine = *plan.scene.machine;
-  const sim::PassesTiming timing = sim::replay_passes(build.passes, machine, plan.cores);
-  BuildCost cost{.builder = Builder::kCores};
-  for (const sim::PassTiming& pass : timing.passes) cost.passes.push_back(figures_of(pass));
-  PassFigures& master = cost.passes.emplace_back();
-  master.name = kMasterPass;
-  master.run_cycles = cycles_of_master(build, machine);
-  for (const PassFigures& pass : cost.passes) cost.cycles += pass.cycles();
-  cost.seconds = cost.cycles / machine.clock_hz;
-  return cost;
-}
-
 std::string word_of_builder(const std::optional<BuildCost>& build) {
   if (!build || build->cycles == 0) return "";
   return build->builder == Builder::kCores ? "cores" : "master";
@@ -66,7 +53,7 @@ std::string words_of_builds(const std::vector<NamedFrame>& frames, const std::op
   const bool are_of_cores = std::ranges::all_of(
       frames, [](const NamedFrame& frame) { return word_of_builder(frame.figures.build) == "cores"; });
   if (are_of_cores) return " with their builds by the cores";
-  return are_counted ? " with their builds" : " without their builds; --build cores counts those of trees";
+  return are_counted ? " with their builds" : " without their builds, which are not all counted";
 }
 
 // Passes on the average of all frames.
@@ -107,14 +94,44 @@ void print_passes(const std::vector<NamedFrame>& frames) {
 
 }  // namespace
 
-std::optional<BuildCost> cost_of_build(const SceneInput& input, const FrameMemory& memory, const RenderPlan& plan) {
-  if (!memory.cores_build.passes.empty()) return cost_of_cores(memory.cores_build, plan);
+std::optional<sim::BuildWork> work_of_master(const Mesh& mesh, FrameMemory& memory) {
+  const SceneImageView& image = memory.image;
+  const sim::MeshLines lines = sim::count_mesh_lines(mesh.view());
+  if (!image.has_tree) return sim::grid_build_work(mesh.vertices.size(), mesh.triangles.size(), memory.need, lines);
+  const bool has_prices = !image.has_grid && !image.has_effects &&
+                          image.tree.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kVertices);
+  if (!has_prices) return std::nullopt;
+  const std::span<const std::byte> nodes =
+      memory.memory.bytes_at(memory.image_address.offset_by(image.tree.nodes_offset_bytes),
+                             std::uint64_t{image.tree.node_count} * sizeof(TreeNode));
+  return sim::tree_image_work(mesh.view(),
+                              {image.tree.leaf_triangles,
+                               TreeOrder::kByNumber,
+                               {reinterpret_cast<const TreeNode*>(nodes.data()), image.tree.node_count}},
+                              image.header.image_bytes, lines);
+}
+
+std::optional<BuildCost> cost_of_build(const SceneInput& input, FrameMemory& memory, const RenderPlan& plan) {
+  if (!memory.cores_build.passes.empty()) return cost_of_cores(memory.cores_build, *plan.scene.machine, plan.cores);
   const Mesh* const mesh = std::get_if<Mesh>(&input.content);
-  if (mesh == nullptr || !memory.image.has_grid || memory.image.has_tree) return std::nullopt;
+  if (mesh == nullptr) return std::nullopt;
   const sim::MasterProfile& master = plan.scene.machine->master;
-  const sim::BuildWork work = sim::grid_build_work(mesh->vertices.size(), mesh->triangles.size(), memory.need,
-                                                   sim::count_mesh_lines(mesh->view()));
-  return BuildCost{sim::build_cycles(master, work), sim::build_seconds(master, work), Builder::kMaster};
+  const std::optional<sim::BuildWork> work = work_of_master(*mesh, memory);
+  if (!work) return std::nullopt;
+  return BuildCost{sim::build_cycles(master, *work), sim::build_seconds(master, *work), Builder::kMaster};
+}
+
+// The passes one after another, then the general core.
+BuildCost cost_of_cores(const CoresBuild& build, const sim::MachineProfile& machine, std::uint32_t cores) {
+  const sim::PassesTiming timing = sim::replay_passes(build.passes, machine, cores);
+  BuildCost cost{.builder = Builder::kCores};
+  for (const sim::PassTiming& pass : timing.passes) cost.passes.push_back(figures_of(pass));
+  PassFigures& master = cost.passes.emplace_back();
+  master.name = kMasterPass;
+  master.run_cycles = cycles_of_master(build, machine);
+  for (const PassFigures& pass : cost.passes) cost.cycles += pass.cycles();
+  cost.seconds = cost.cycles / machine.clock_hz;
+  return cost;
 }
 
 double cycles_of_master(const CoresBuild& build, const sim::MachineProfile& machine) {

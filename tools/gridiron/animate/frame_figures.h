@@ -2,6 +2,7 @@
 // Memory: std::string. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/sim/build_work.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/pass_timing.h>
 #include <gridiron/sim/replay.h>
@@ -51,11 +52,18 @@ struct FrameFigures {
   [[nodiscard]] double fps() const { return seconds() > 0 ? 1 / seconds() : 0; }
 };
 
-/// @returns the cost of building a frame's scene image; nothing where it is not counted: a tree that the general core
-/// builds, and a packed scene, which somebody else has built. Of a build by the cores all passes count, one after
-/// another, and what the general core does behind them; of a scene with effects only the tree and the check value.
-[[nodiscard]] std::optional<BuildCost> cost_of_build(const SceneInput& input, const FrameMemory& memory,
+/// @returns the cost of building a frame's scene image; nothing where it is not counted: an image with effects or a
+/// tree on a lattice that the general core builds, and a packed scene, which somebody else has built. Of a build by the
+/// cores all passes count, one after another, and what the general core does behind them; of a scene with effects only
+/// the tree and the check value.
+[[nodiscard]] std::optional<BuildCost> cost_of_build(const SceneInput& input, FrameMemory& memory,
                                                      const RenderPlan& plan);
+
+/// @returns what the general core does for the image of a mesh; nothing where it is not counted.
+[[nodiscard]] std::optional<sim::BuildWork> work_of_master(const Mesh& mesh, FrameMemory& memory);
+
+/// @returns the cost of a build by so many cores.
+[[nodiscard]] BuildCost cost_of_cores(const CoresBuild& build, const sim::MachineProfile& machine, std::uint32_t cores);
 
 /// What the general core does behind the passes of a build, by its name and in cycles of the cores.
 inline constexpr const char* kMasterPass = "check_value";

@@ -147,10 +147,12 @@ Finish add_experiment(CLI::App& app) {
   add_choice(app, "NAME", experiment.name,
              Choices<ExperimentName>{{"paper", ExperimentName::kPaper},
                                      {"accuracy", ExperimentName::kAccuracy},
-                                     {"effects", ExperimentName::kEffects}},
+                                     {"effects", ExperimentName::kEffects},
+                                     {"dynamic", ExperimentName::kDynamic}},
              "paper: Tables 1-4, Figs. 5-7 and sweeps; some eight minutes of processor time with the scans. accuracy: "
              "what each accuracy profile costs and what is wrong with its answers; some three minutes. effects: what "
-             "each effect costs, and that one that is off costs nothing; some half a minute, no scans. All leave CSV, "
+             "each effect costs, and that one that is off costs nothing; some half a minute, no scans. dynamic: what "
+             "building anew for each frame costs, by the general core and by the cores; some minutes. All leave CSV, "
              "SVG and index.html; without a terminal nothing is printed before the end")
       ->required();
   add_parsed(app, "-o,--output", experiment.output, parse_path, "the name of a folder", "DIR",
@@ -162,14 +164,15 @@ Finish add_experiment(CLI::App& app) {
       "folder of the scans (default: the environment's GRIDIRON_SCENES); scans that are not there are left "
       "out, and without any a teapot and a torus knot are made; effects makes its own scenes");
   add_threads(app, experiment.threads, "no file but host_*.csv, which measures this host, depends on it");
-  add_size(app, experiment.size, "pictures in pixels (default 1024x1024; effects: 96x96, at least 16x16)");
+  add_size(app, experiment.size,
+           "pictures in pixels (default 1024x1024; dynamic: 512x512; effects: 96x96, at least 16x16)");
   add_count(app, "--largest", experiment.largest_knot, 6'000, 10'000'000,
-            "paper: triangles of the largest mesh of Table 1 (default 1000000)");
+            "triangles of the largest mesh of Table 1 of paper (default 1000000), of the largest knot of dynamic");
   add_quiet(app, experiment.quiet);
   return [asked] {
     ExperimentRequest& request = *asked;
-    if (request.largest_knot && request.name != ExperimentName::kPaper) {
-      usage_error("--largest: is of experiment paper alone");
+    if (request.largest_knot && request.name != ExperimentName::kPaper && request.name != ExperimentName::kDynamic) {
+      usage_error("--largest: is of experiments paper and dynamic alone");
     }
     if (request.name == ExperimentName::kEffects) {
       if (request.scenes) usage_error("--scenes: experiment effects makes its own");

@@ -64,7 +64,7 @@ struct MachinesRequest {
   bool quiet = false;  ///< accepted as everywhere: a list has no other output
 };
 
-enum class ExperimentName { kPaper, kAccuracy, kEffects };
+enum class ExperimentName { kPaper, kAccuracy, kEffects, kDynamic };
 
 struct ExperimentRequest {
   ExperimentName name = ExperimentName::kPaper;

@@ -204,7 +204,7 @@ Finish add_animate(CLI::App& app) {
   add_choice(app, "--build", animate.builder,
              Choices<Builder>{{"cores", Builder::kCores}, {"master", Builder::kMaster}},
              "what builds the tree of each frame: the cores, whose passes are counted (default with best), or the "
-             "general core, whose time for a tree is not counted; it also builds all grids");
+             "general core, which also builds all grids");
   app.add_flag("--keep-vertex-order", animate.keeps_vertex_order,
                "the cores read vertices in the order of the file; by default they are put in an order of space once, "
                "when they are loaded");

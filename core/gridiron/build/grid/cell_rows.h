@@ -5,7 +5,7 @@
 
 #include <gridiron/base/math.h>
 #include <gridiron/base/records.h>
-#include <gridiron/build/grid/build_step.h>
+#include <gridiron/build/build_step.h>
 #include <gridiron/build/grid/grid_builder.h>
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 #include <gridiron/base/check_value.h>
 #include <gridiron/base/triangle_formats.h>
 #include <gridiron/build/effects/effect_sections.h>
-#include <gridiron/build/grid/build_step.h>
+#include <gridiron/build/build_step.h>
 #include <gridiron/build/grid/cell_rows.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/image_layout.h>
@@ -370,6 +370,7 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
     link_surfaces(layout.tree, layout.effects.record, image.data());
   }
   if (has_tree) {
+    enter_step<TreeStep::kCheckedLine>();
     const std::uint64_t bytes = layout.tree.end_bytes - layout.effects.begin_bytes;
     check.add({image.data() + layout.effects.begin_bytes, static_cast<std::size_t>(bytes)});
   }

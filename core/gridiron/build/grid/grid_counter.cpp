@@ -1,6 +1,6 @@
 // Counting of scene images: see grid_builder.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/triangle_formats.h>
-#include <gridiron/build/grid/build_step.h>
+#include <gridiron/build/build_step.h>
 #include <gridiron/build/grid/cell_rows.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/grid_resolution.h>
@@ -81,6 +81,7 @@ Status survey(const Mesh& mesh, KeptTriangles& kept) {
 // The same for the tree alone, without the sums.
 template <class Mesh>
 Status survey_for_tree(const Mesh& mesh, KeptTriangles& kept) {
+  enter_step<TreeStep::kTriangleSurvey>();
   const auto vertex_count = static_cast<std::int64_t>(mesh.vertices.size());
   QuadBox bounds;
   for (const UVec3& t : mesh.triangles) {
@@ -373,6 +374,7 @@ Status count_within(const MeshView& mesh, Request request, const EffectsView* ef
   if (mesh.triangles.size() > kMaxCount || mesh.vertices.size() > kMaxCount) return Status::kTooManyTriangles;
   if (has_tree && mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
   QuadBox vertices;
+  if (!request.parameters.has_grid) enter_step<TreeStep::kVertexBound>();
   const bool are_right =
       request.parameters.has_grid ? all_in_range(mesh.vertices) : bound_points(mesh.vertices, vertices);
   if (!are_right) return Status::kBadVertex;

@@ -20,24 +20,24 @@ namespace gridiron {
 
 /// Sizes of a core of 256 KB. None changes a byte of the tree.
 struct BuildLayout256K {
-  static constexpr std::uint32_t kArenaBytes = 256 * 1024;      ///< local memory of a core
-  static constexpr std::uint32_t kCodeBudgetBytes = 67 * 1024;  ///< of it for code
+  static constexpr std::uint32_t kArenaBytes = 256 * 1024;            ///< local memory of a core
+  static constexpr std::uint32_t kCodeBudgetBytes = 67 * 1024;        ///< of it for code
   static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024 + 512;  ///< of it for the stack
-  static constexpr std::uint32_t kRunTriangles = 1728;          ///< that one item codes and sorts
-  static constexpr bool kSortsRecords = true;                   ///< runs have their records in the order of codes
-  static constexpr std::uint32_t kCacheLines = 512;             ///< of vertices, a power of two
-  static constexpr std::uint32_t kChunkTriangles = 32;          ///< whose corners are asked for at once
-  static constexpr std::uint32_t kIndexWindow = 128;            ///< triangles
-  static constexpr std::uint32_t kSamples = 4096;               ///< codes by which buckets are chosen, at most
-  static constexpr std::uint32_t kBucketKeys = 2400;            ///< that are sorted in the store, with their records
-  static constexpr std::uint32_t kBucketRecords = 2656;         ///< places for these, a few between runs
-  static constexpr std::uint32_t kLoneKeys = 8960;              ///< that are sorted there without their records
-  static constexpr std::uint32_t kPieceKeys = 7680;             ///< that are split there
-  static constexpr std::uint32_t kFarKeys = 1024;               ///< of more than fit the store, sorted at once
-  static constexpr std::uint32_t kDigitBits = 9;                ///< of a code, sorted at once
-  static constexpr std::uint32_t kFewDigitBits = 6;             ///< the same for a few keys
-  static constexpr std::uint32_t kTopSamples = 4096;            ///< codes that guide the splits of large ranges
-  static constexpr std::uint32_t kRecordWindow = 32;            ///< records that are read or written at once
+  static constexpr std::uint32_t kRunTriangles = 1728;                ///< that one item codes and sorts
+  static constexpr bool kSortsRecords = true;                         ///< runs have their records in the order of codes
+  static constexpr std::uint32_t kCacheLines = 512;                   ///< of vertices, a power of two
+  static constexpr std::uint32_t kChunkTriangles = 32;                ///< whose corners are asked for at once
+  static constexpr std::uint32_t kIndexWindow = 128;                  ///< triangles
+  static constexpr std::uint32_t kSamples = 4096;                     ///< codes by which buckets are chosen, at most
+  static constexpr std::uint32_t kBucketKeys = 2400;     ///< that are sorted in the store, with their records
+  static constexpr std::uint32_t kBucketRecords = 2656;  ///< places for these, a few between runs
+  static constexpr std::uint32_t kLoneKeys = 8960;       ///< that are sorted there without their records
+  static constexpr std::uint32_t kPieceKeys = 7680;      ///< that are split there
+  static constexpr std::uint32_t kFarKeys = 1024;        ///< of more than fit the store, sorted at once
+  static constexpr std::uint32_t kDigitBits = 9;         ///< of a code, sorted at once
+  static constexpr std::uint32_t kFewDigitBits = 6;      ///< the same for a few keys
+  static constexpr std::uint32_t kTopSamples = 4096;     ///< codes that guide the splits of large ranges
+  static constexpr std::uint32_t kRecordWindow = 32;     ///< records that are read or written at once
 };
 
 /// Sizes of a core of 64 KB.

@@ -1,5 +1,6 @@
 // Building the wide tree: see the header. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
+#include <gridiron/build/build_step.h>
 #include <gridiron/build/mesh_quads.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
@@ -14,17 +15,20 @@ namespace {
 
 // Sorts keys by their codes, equal ones in the order they have, digit by digit: to `to` if there is an odd number of
 // digits, else back to `from`. Both are changed.
-template <std::uint32_t kDigitBits>
+template <std::uint32_t kDigitBits, TreeStep kKeyStep, TreeStep kValueStep = TreeStep::kDigitValue>
 void sort_keys(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t* counts) {
   constexpr std::uint32_t kDigits = kTreeCodeBits / kDigitBits, kValues = 1u << kDigitBits;
   static_assert(kDigits * kDigitBits == kTreeCodeBits);
   const auto digit_of = [](TreeKey key, std::uint32_t digit)
                             GRIDIRON_INLINE_LAMBDA { return (key.code() >> kDigitBits * digit) % kValues; };
+  enter_step<kValueStep>();
   for (std::uint32_t i = 0; i < kDigits * kValues; ++i) counts[i] = 0;
+  enter_step<kKeyStep>();
   for (std::uint32_t i = 0; i < count; ++i) {
     for (std::uint32_t digit = 0; digit < kDigits; ++digit) ++counts[digit * kValues + digit_of(from[i], digit)];
   }
   for (std::uint32_t digit = 0; digit < kDigits; ++digit) {
+    enter_step<kValueStep>();
     std::uint32_t* const places = counts + digit * kValues;
     std::uint32_t sum = 0;
     for (std::uint32_t i = 0; i < kValues; ++i) {
@@ -32,6 +36,7 @@ void sort_keys(TreeKey* from, TreeKey* to, std::uint32_t count, std::uint32_t* c
       places[i] = sum;
       sum += here;
     }
+    enter_step<kKeyStep>();
     // Several keys are read before the first of them is written: a processor that has once seen a place read right
     // after it was written would let each key wait for the one before.
     constexpr std::uint32_t kGroup = 8;
@@ -139,12 +144,17 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   [[nodiscard]] Status build() {
     size_ = {};
     QuadBox vertices;
+    enter_step<TreeStep::kVertexBound>();
     if (!bound_vertices(mesh_.vertices, vertices)) return Status::kBadVertex;
+    enter_step<TreeStep::kTriangleCode>();
     GRIDIRON_TRY(take_triangles(vertices));
+    enter_step<TreeStep::kNodeSplit>();
     const std::uint32_t count = size_.triangle_count;
     if (count > records_.size()) return Status::kMemoryTooSmall;
     GRIDIRON_TRY(split_all(count));
+    enter_step<TreeStep::kNodeWrite>();
     write_all();
+    enter_step<TreeStep::kOnce>();
     return Status::kOk;
   }
 
@@ -187,9 +197,9 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
       size_.high[axis] = all.high.v[axis];
     }
     if (mesh_.triangles.size() < kManyTreeTriangles) {
-      sort_keys<kKeysDigit>(spare_, keys_, count, counts_);
+      sort_keys<kKeysDigit, TreeStep::kKeySorted>(spare_, keys_, count, counts_);
     } else {
-      sort_keys<kManyKeysDigit>(spare_, keys_, count, counts_);
+      sort_keys<kManyKeysDigit, TreeStep::kKeyScattered>(spare_, keys_, count, counts_);
       ends_ = counts_ + (1u << kManyKeysDigit);
       TreeKey* const sorted = spare_;
       spare_ = keys_;
@@ -246,6 +256,11 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
     return Status::kOk;
   }
 
+  // Where a kind of work begins.
+  GRIDIRON_INLINE void count_work(SplitWork work, std::uint32_t) const {
+    if (work == SplitWork::kLeaf) enter_step<TreeStep::kLeafSplit>();
+    if (work == SplitWork::kPart) enter_step<TreeStep::kNodeSplit>();
+  }
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t code_of(std::uint32_t i) const { return keys_[i].code(); }
   [[nodiscard]] std::uint32_t whole_count() const { return size_.triangle_count; }
 
@@ -278,10 +293,12 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   [[nodiscard]] Status code_again(std::uint32_t begin, std::uint32_t end) {
     const std::uint32_t count = end - begin;
     TreeKey* const keys = keys_ + begin;
+    enter_step<TreeStep::kCrowd>();
     if (count <= kFewTreeTriangles) {
       number(keys, count);
       return Status::kOk;
     }
+    enter_step<TreeStep::kCrowdKey>();
     FourBoxes middles = FourBoxes::none();
     for (std::uint32_t i = 0; i < count; i += 4) {
       const FourBoxes boxes = boxes_of(keys + i, count - i);
@@ -303,9 +320,9 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
       }
     }
     if (are_few) {
-      sort_keys<kFewKeysDigit>(keys, spare_ + begin, count, counts_);
+      sort_keys<kFewKeysDigit, TreeStep::kCrowdKey, TreeStep::kCrowd>(keys, spare_ + begin, count, counts_);
     } else {
-      sort_keys<kKeysDigit>(unsorted, keys, count, counts_);
+      sort_keys<kKeysDigit, TreeStep::kCrowdKey>(unsorted, keys, count, counts_);
     }
     return Status::kOk;
   }
@@ -363,20 +380,25 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
       float area = 0.0f;
       if (child.is_leaf()) {
         boxes[i] = write_leaf<kHasOrder>(child, area);
+        enter_step<TreeStep::kNodeWrite>();
       } else {
         boxes[i] = QuadBox::of_node(nodes_[child.node_index()]);
         if constexpr (kHasOrder) area = areas[child.node_index()];
       }
       if constexpr (kHasOrder) {
+        enter_step<TreeStep::kNodeOrder>();
         total += area;
         densities[i] = density_of(area, child.is_leaf(), boxes[i]);
+        enter_step<TreeStep::kNodeWrite>();
       }
     }
     store_child_boxes(boxes, node);
     node.order = kTreeOrderByNumber;
     if constexpr (kHasOrder) {
+      enter_step<TreeStep::kNodeOrder>();
       areas[number] = total;
       node.order = order_of(densities, node.child_count);
+      enter_step<TreeStep::kNodeWrite>();
     }
   }
 
@@ -385,9 +407,13 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   [[nodiscard]] QuadBox write_leaf(TreeChild leaf, float& area) const {
     QuadBox box;
     for (std::uint32_t k = leaf.first(); k < leaf.first() + leaf.count(); ++k) {
+      enter_step<TreeStep::kTriangleWrite>();
       const CornerQuads corners = form_.write(mesh_, keys_[k].id(), records_[k]);
       box.add(corners);
-      if constexpr (kHasArea) area += area_of(corners);
+      if constexpr (kHasArea) {
+        enter_step<TreeStep::kTriangleArea>();
+        area += area_of(corners);
+      }
     }
     return box.grown(margin_);
   }
@@ -408,6 +434,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
 template <class Form, class Mesh>
 Status build(const Mesh& mesh, std::uint32_t leaf_triangles, std::span<typename Form::Record> records,
              std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size, TreeOrder order) {
+  enter_step<TreeStep::kOnce>();
   if (leaf_triangles == 0 || leaf_triangles > kMaxTreeLeaf) return Status::kBadParameter;
   if (mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
   if (scratch.size() < tree_scratch_bytes(mesh.triangles.size())) return Status::kMemoryTooSmall;

@@ -4,7 +4,7 @@
 #pragma once
 
 #define enter_step enter_no_step
-#include "../../../../../../core/gridiron/build/grid/build_step.h"
+#include "../../../../../core/gridiron/build/build_step.h"
 #undef enter_step
 
 namespace gridiron {

@@ -1,5 +1,5 @@
-// Steps of counting and building a scene image, and a mark of where each begins in the code. Internal header.
-// Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
+// Steps of counting and building a scene image with its grid or its tree, and a mark of where each begins in the code.
+// Internal header. Memory: none. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -31,6 +31,27 @@ enum class GridStep : std::uint8_t {
   kLatticeSort,      ///< lattice: references sorted by cell, in the cells' bounds
   kLatticeWrite,     ///< lattice: triangle records written
   kLatticeCellSum,   ///< lattice: cells of blocks summed
+  kCount
+};
+
+/// The same of a tree and its image.
+enum class TreeStep : std::uint8_t {
+  kOnce = static_cast<std::uint8_t>(GridStep::kCount),  ///< what is done once a build
+  kVertexBound,     ///< vertices bounded, once when an image is counted and once when its tree is built
+  kTriangleSurvey,  ///< triangles read when an image is counted: indices, zero area, bounds
+  kTriangleCode,    ///< triangles read: indices, zero area, bounds, code
+  kDigitValue,      ///< values of digits of codes: the counts of each, cleared and summed
+  kKeySorted,       ///< keys moved by a digit of 10 bits, three times each
+  kKeyScattered,    ///< the same by one of 15 bits, twice each
+  kLeafSplit,       ///< leaves of nodes that have leaves alone
+  kNodeSplit,       ///< other nodes
+  kCrowd,           ///< crowds: triangles of one code that a leaf does not hold
+  kCrowdKey,        ///< of crowds of more than 32, triangles that are coded again and sorted
+  kTriangleWrite,   ///< triangle records written
+  kTriangleArea,    ///< the same, where children are ordered by their areas
+  kNodeWrite,       ///< nodes written: boxes of their children
+  kNodeOrder,       ///< the same, where children are ordered
+  kCheckedLine,     ///< 128-byte lines of an image added to its check value
   kCount
 };
 
