@@ -60,4 +60,8 @@ enum class TreeStep : std::uint8_t {
 template <auto kStep>
 constexpr void enter_step() {}
 
+/// For arguments of templates: where steps are priced, code is compiled anew for each of them, else once.
+template <auto kStep>
+inline constexpr auto kPricedStep = TreeStep::kOnce;
+
 }  // namespace gridiron

@@ -197,9 +197,9 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
       size_.high[axis] = all.high.v[axis];
     }
     if (mesh_.triangles.size() < kManyTreeTriangles) {
-      sort_keys<kKeysDigit, TreeStep::kKeySorted>(spare_, keys_, count, counts_);
+      sort_keys<kKeysDigit, kPricedStep<TreeStep::kKeySorted>>(spare_, keys_, count, counts_);
     } else {
-      sort_keys<kManyKeysDigit, TreeStep::kKeyScattered>(spare_, keys_, count, counts_);
+      sort_keys<kManyKeysDigit, kPricedStep<TreeStep::kKeyScattered>>(spare_, keys_, count, counts_);
       ends_ = counts_ + (1u << kManyKeysDigit);
       TreeKey* const sorted = spare_;
       spare_ = keys_;
@@ -320,9 +320,10 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
       }
     }
     if (are_few) {
-      sort_keys<kFewKeysDigit, TreeStep::kCrowdKey, TreeStep::kCrowd>(keys, spare_ + begin, count, counts_);
+      sort_keys<kFewKeysDigit, kPricedStep<TreeStep::kCrowdKey>, kPricedStep<TreeStep::kCrowd>>(keys, spare_ + begin,
+                                                                                                count, counts_);
     } else {
-      sort_keys<kKeysDigit, TreeStep::kCrowdKey>(unsorted, keys, count, counts_);
+      sort_keys<kKeysDigit, kPricedStep<TreeStep::kCrowdKey>>(unsorted, keys, count, counts_);
     }
     return Status::kOk;
   }

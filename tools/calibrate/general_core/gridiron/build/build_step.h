@@ -4,8 +4,10 @@
 #pragma once
 
 #define enter_step enter_no_step
+#define kPricedStep kUnpricedStep
 #include "../../../../../core/gridiron/build/build_step.h"
 #undef enter_step
+#undef kPricedStep
 
 namespace gridiron {
 
@@ -19,5 +21,8 @@ template <auto kStep>
   asm volatile("slti zero, zero, %0" : : "n"(kFirstStepMark + static_cast<int>(kStep)) : "memory");
 #endif
 }
+
+template <auto kStep>
+inline constexpr auto kPricedStep = kStep;
 
 }  // namespace gridiron
