@@ -375,7 +375,7 @@ class FarOrder {
   // Sorts by `again`: records go to the target, and keys and records from there to their final places.
   [[nodiscard]] GRIDIRON_RARE Status sort() {
     const auto each = [this](auto&& visit) -> Status {
-      return each_key([&visit](const SortedKey& key) { return visit(key.again, key.place); });
+      return this->each_key([&visit](const SortedKey& key) { return visit(key.again, key.place); });
     };
     std::uint32_t sorted = begin_;
     const auto emit = [&](const BucketKey* share, std::uint32_t n) -> Status {
