@@ -227,6 +227,7 @@ struct Lanes {
     friend GRIDIRON_INLINE Double operator*(Double a, Double b) { return Double(a.v * b.v); }
     friend GRIDIRON_INLINE Double operator/(Double a, Double b) { return Double(a.v / b.v); }
     friend GRIDIRON_INLINE Long operator<(Double a, double b) { return {a.v < b}; }
+    friend GRIDIRON_INLINE Long operator<(Double a, Double b) { return {a.v < b.v}; }
   };
 
   /// Lane `lane` of a.
@@ -303,6 +304,10 @@ struct Lanes {
   [[nodiscard]] static GRIDIRON_INLINE Float abs(Float a) {
     const IntVector magnitude = reinterpret_cast<IntVector>(a.v) & 0x7FFFFFFF;
     return Float(reinterpret_cast<FloatVector>(magnitude));
+  }
+  [[nodiscard]] static GRIDIRON_INLINE Double abs(Double a) {
+    const LongVector magnitude = reinterpret_cast<LongVector>(a.v) & 0x7FFFFFFFFFFFFFFF;
+    return Double(reinterpret_cast<DoubleVector>(magnitude));
   }
   /// The larger of two magnitudes. A NaN of one of them may be lost.
   [[nodiscard]] static GRIDIRON_INLINE Float larger_size(Float a, Float b) {

@@ -131,6 +131,12 @@ struct HitSetups {
   }
 };
 
+/// A triangle's normal in double, and the sums of magnitudes of the products that its components are.
+struct PlaneNormal {
+  double normal[3], products[3];
+};
+void set_up_plane_normal(const VertexTriangle& triangle, PlaneNormal& plane);
+
 /// An interval that contains a ray's distance to a triangle, from doubles.
 struct DistanceInterval {
   double low, high;

@@ -64,6 +64,10 @@ void set_up_distance(const float origin[3], float dir_max, const VertexTriangle&
   setup.relative_error_per_t = double{dir_max} * plane.normal_error / magnitude(plane.volume);
 }
 
+void set_up_plane_normal(const VertexTriangle& triangle, PlaneNormal& plane) {
+  normal_of(triangle, plane.normal, plane.products);
+}
+
 DistanceInterval distance_interval(const float origin[3], float dir_max, const float dir[3],
                                    const VertexTriangle& triangle) {
   const Plane plane = plane_of(origin, triangle);

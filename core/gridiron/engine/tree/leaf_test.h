@@ -79,14 +79,20 @@ GRIDIRON_INLINE void load_records(const VertexTriangle* records, std::uint32_t b
   }
 }
 
-/// Spreads `count` records over lanes.
+/// Spreads `count` records over lanes. @param all_corners  gets their corners too, unless it is null.
 template <class L>
-GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, TriangleLanes& lanes) {
+GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, TriangleLanes& lanes,
+                                  GroupCorners* all_corners = nullptr) {
   using Float = typename L::Float;
   const Float factor(kSideErrorFactor);
   for (std::uint32_t base = 0; base < count; base += L::kCount) {
     Float corners[12];  // nine coordinates
     load_records<L>(records, base, count, corners);
+    if constexpr (L::kCount > 4) {
+      if (all_corners != nullptr) {
+        for (int word = 0; word < 9; ++word) corners[word].store(all_corners->of[word / 3][word % 3] + base);
+      }
+    }
     Float e1[3], e2[3], sizes(kLeastListSize), edges(kLeastListSize);
     for (int axis = 0; axis < 3; ++axis) {
       const Float v = corners[axis];
@@ -174,10 +180,10 @@ struct LeafAnswer {
 /// What leaves need of a ray, in every lane.
 template <class L>
 struct LeafRay {
-  typename L::Float origin[3], dir[3], t, dir_max;
+  using Float = typename L::Float;
+  Float origin[3], dir[3], t, dir_max;
 
   GRIDIRON_INLINE explicit LeafRay(const BatchRay& ray) {
-    using Float = typename L::Float;
     if constexpr (L::kCount == 4) {
       const Float place = Float::load(ray.origin), sizes = Float::load(ray.inverse), way = Float::load(ray.dir);
       origin[0] = L::template shuffle_quads<0, 0, 0, 0>(place);
@@ -196,13 +202,28 @@ struct LeafRay {
       t = Float(ray.t), dir_max = Float(ray.dir_max);
     }
   }
+  /// Rays of a group instead, one a lane, from `base` on.
+  GRIDIRON_INLINE LeafRay(const RayGroup& group, std::uint32_t base)
+      : t(Float::load(group.t + base)), dir_max(Float::load(group.dir_max + base)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis] = Float::load(group.origin[axis] + base);
+      dir[axis] = Float::load(group.dir[axis] + base);
+    }
+  }
 };
+
+/// One triangle in all lanes, or as many triangles as there are lanes.
+template <class L, bool kIsOne>
+[[nodiscard]] GRIDIRON_INLINE typename L::Float load_triangles(const float* words) {
+  if constexpr (kIsOne) return typename L::Float(*words);
+  return L::Float::load(words);
+}
 
 /// Wide lanes first rule out what they can by wider bounds of less work, without a branch between sides and distance:
 /// half of the rays pass through their own triangle's plane within its sides. Few lanes would gain no more than it
 /// costs.
-template <class L, bool kBounded>
-inline constexpr bool kFiltersFirst = L::kRoundsOnce&& kBounded;
+template <class L, bool kBounded, bool kIsOne>
+inline constexpr bool kFiltersFirst = L::kRoundsOnce && kBounded && !kIsOne;
 
 /// Sums of products. @tparam kBounded  what is unsure is decided exactly. With Accuracy::kFast it is not always, so all
 /// lanes compute the same bits.
@@ -222,8 +243,8 @@ struct LeafSums {
   }
 };
 
-/// The lanes of a leaf from `base` on, in registers.
-template <class L, bool kBounded>
+/// The lanes of a leaf from `base` on, in registers. @tparam kIsOne  the triangle at `base` is in all lanes instead.
+template <class L, bool kBounded, bool kIsOne = false>
 struct LeafLanes : LeafSums<L, kBounded> {
   using Float = typename L::Float;
   using LeafSums<L, kBounded>::sum, LeafSums<L, kBounded>::difference, LeafSums<L, kBounded>::inner;
@@ -231,18 +252,18 @@ struct LeafLanes : LeafSums<L, kBounded> {
   Float wide_edge_error, wide_normal_error, least_error;  ///< if kFiltersFirst
 
   GRIDIRON_INLINE LeafLanes(const TriangleLanes& lanes, std::uint32_t base)
-      : edge_error(Float::load(lanes.edge_error + base)),
-        normal_error(Float::load(lanes.normal_error + base)),
+      : edge_error(load_triangles<L, kIsOne>(lanes.edge_error + base)),
+        normal_error(load_triangles<L, kIsOne>(lanes.normal_error + base)),
         wide_edge_error(edge_error),
         wide_normal_error(edge_error),
         least_error(edge_error) {
     for (int axis = 0; axis < 3; ++axis) {
-      v[axis] = Float::load(lanes.v[axis] + base);
-      back_e1[axis] = Float::load(lanes.back_e1[axis] + base);
-      e2[axis] = Float::load(lanes.e2[axis] + base);
-      n[axis] = Float::load(lanes.normal[axis] + base);
+      v[axis] = load_triangles<L, kIsOne>(lanes.v[axis] + base);
+      back_e1[axis] = load_triangles<L, kIsOne>(lanes.back_e1[axis] + base);
+      e2[axis] = load_triangles<L, kIsOne>(lanes.e2[axis] + base);
+      n[axis] = load_triangles<L, kIsOne>(lanes.normal[axis] + base);
     }
-    if constexpr (kFiltersFirst<L, kBounded>) {
+    if constexpr (kFiltersFirst<L, kBounded, kIsOne>) {
       wide_edge_error = edge_error * Float(3.0f);
       wide_normal_error = normal_error * Float(3.0f);
       least_error = normal_error + edge_error * Float(kLeastListSize);
@@ -251,7 +272,31 @@ struct LeafLanes : LeafSums<L, kBounded> {
 
   /// @param there  the lanes that have a triangle.
   [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const BatchRay& ray, std::uint32_t there) const {
-    const LeafRay<L> q(ray);
+    return test(LeafRay<L>(ray), there);
+  }
+  /// @param own  lanes of a ray and its own triangle. @returns the lanes that wider bounds do not rule out.
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t candidates(const LeafRay<L>& q, typename L::Mask own) const {
+    const Float x = v[0] - q.origin[0], y = v[1] - q.origin[1], z = v[2] - q.origin[2];
+    const Float r[3] = {difference(y, q.dir[2], z, q.dir[1]), difference(z, q.dir[0], x, q.dir[2]),
+                        difference(x, q.dir[1], y, q.dir[0])};
+    const Float denominator = inner(q.dir, n);
+    const Float first = L::turn_by(denominator, inner(r, e2));
+    const Float second = L::turn_by(denominator, inner(r, back_e1));
+    const Float size = L::abs(denominator);
+    const Float least = L::min(L::min(first, second), size - first - second);
+    const Float place[3] = {x, y, z};
+    // The bounds of test() with three times the largest component in place of the sum.
+    const Float wide_edge = edge_error * Float(3.0f), wide_normal = normal_error * Float(3.0f);
+    const Float most = L::larger_size(L::larger_size(x, y), z);
+    const Float side = sum(sum(most, wide_edge, normal_error + edge_error * Float(kLeastListSize)), q.dir_max, least);
+    const Float ahead = L::turn_by(denominator, inner(place, n));
+    const Float turn = wide_normal * q.dir_max;
+    const Float limit = sum(sum(size, Float(1.0f + 0x1p-20f), turn), q.t, Float(2.0f * kLeastAhead));
+    const auto away = (sum(most, wide_normal, ahead) < Float(-2.0f * kLeastAhead)) |
+                      (sum(most, -wide_normal, ahead) > limit);
+    return L::kAllBits & ~((side < Float(0.0f)) | (away & (size > turn)) | own).bits();
+  }
+  [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const LeafRay<L>& q, std::uint32_t there) const {
     const Float x = v[0] - q.origin[0], y = v[1] - q.origin[1], z = v[2] - q.origin[2];
     const Float r[3] = {difference(y, q.dir[2], z, q.dir[1]), difference(z, q.dir[0], x, q.dir[2]),
                         difference(x, q.dir[1], y, q.dir[0])};
@@ -262,7 +307,7 @@ struct LeafLanes : LeafSums<L, kBounded> {
     const Float third = size - first - second;
     const Float least = L::min(L::min(first, second), third);
     const Float place[3] = {x, y, z};
-    if constexpr (kFiltersFirst<L, kBounded>) {
+    if constexpr (kFiltersFirst<L, kBounded, kIsOne>) {
       // The bounds below with three times the largest component in place of the sum.
       const Float most = L::larger_size(L::larger_size(x, y), z);
       const Float side = sum(sum(most, wide_edge_error, least_error), q.dir_max, least);
@@ -285,7 +330,7 @@ struct LeafLanes : LeafSums<L, kBounded> {
 };
 
 /// The same of lanes that set_up_origin() prepared.
-template <class L, bool kBounded>
+template <class L, bool kBounded, bool kIsOne = false>
 struct SharedLanes : LeafSums<L, kBounded> {
   using Float = typename L::Float;
   using LeafSums<L, kBounded>::inner;
@@ -295,29 +340,48 @@ struct SharedLanes : LeafSums<L, kBounded> {
 
   /// @param ids  no_hit() of the triangles.
   GRIDIRON_INLINE SharedLanes(const TriangleLanes& lanes, std::uint32_t base, const std::uint32_t* ids)
-      : ahead(Float::load(lanes.e2[0] + base)),
-        ahead_error(Float::load(lanes.e2[1] + base)),
-        error(Float::load(lanes.edge_error + base)),
-        normal_error(Float::load(lanes.normal_error + base)),
+      : ahead(load_triangles<L, kIsOne>(lanes.e2[0] + base)),
+        ahead_error(load_triangles<L, kIsOne>(lanes.e2[1] + base)),
+        error(load_triangles<L, kIsOne>(lanes.edge_error + base)),
+        normal_error(load_triangles<L, kIsOne>(lanes.normal_error + base)),
         own_ids(ids + base) {
     for (int axis = 0; axis < 3; ++axis) {
-      first[axis] = Float::load(lanes.v[axis] + base);
-      second[axis] = Float::load(lanes.back_e1[axis] + base);
-      n[axis] = Float::load(lanes.normal[axis] + base);
+      first[axis] = load_triangles<L, kIsOne>(lanes.v[axis] + base);
+      second[axis] = load_triangles<L, kIsOne>(lanes.back_e1[axis] + base);
+      n[axis] = load_triangles<L, kIsOne>(lanes.normal[axis] + base);
     }
   }
 
   /// @param there  the lanes that have a triangle.
   [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const BatchRay& ray, std::uint32_t there) const {
-    const LeafRay<L> q(ray);
+    // Rays from a light end on their own triangles, which would all be candidates.
+    return test(LeafRay<L>(ray), there, L::equal(ray.id, own_ids));
+  }
+  /// @param own  lanes of a ray and its own triangle. @returns the lanes that these bounds do not rule out.
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t candidates(const LeafRay<L>& q, typename L::Mask own) const {
+    const Float denominator = inner(q.dir, n);
+    const Float side = L::turn_by(denominator, inner(q.dir, first));
+    const Float other = L::turn_by(denominator, inner(q.dir, second));
+    const Float size = L::abs(denominator);
+    const Float least = L::min(L::min(side, other), size - side - other);
+    const Float turn = normal_error * q.dir_max, place = L::turn_by(denominator, ahead);
+    const auto away = (place + ahead_error < Float(0.0f)) |
+                      (place - ahead_error > (size + turn) * q.t * Float(1.0f + 0x1p-20f));
+    return L::kAllBits & ~((least + error * q.dir_max < Float(0.0f)) | (away & (size > turn)) | own).bits();
+  }
+  [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const LeafRay<L>& q, std::uint32_t there) const {
+    return test(q, there, L::mask_from_bits(0));
+  }
+  /// @param own  lanes of a ray and its own triangle.
+  [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const LeafRay<L>& q, std::uint32_t there,
+                                                   typename L::Mask own) const {
     const Float denominator = inner(q.dir, n);
     const Float side = L::turn_by(denominator, inner(q.dir, first));
     const Float other = L::turn_by(denominator, inner(q.dir, second));
     const Float size = L::abs(denominator);
     const Float least = L::min(L::min(side, other), size - side - other);
     const Float most_error = error * q.dir_max;
-    // Rays from a light end on their own triangles, which would all be candidates.
-    const std::uint32_t candidates = there & ~((least + most_error < Float(0.0f)) | L::equal(ray.id, own_ids)).bits();
+    const std::uint32_t candidates = there & ~((least + most_error < Float(0.0f)) | own).bits();
     if (candidates == 0) return LeafAnswer<L>::none();
     return LeafAnswer<L>::judge(candidates, (least > most_error).bits(), L::turn_by(denominator, ahead), ahead_error,
                                 size, normal_error * q.dir_max, q.t);

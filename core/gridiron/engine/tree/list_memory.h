@@ -62,6 +62,20 @@ struct BeamMemory {
 template <>
 struct BeamMemory<0> {};
 
+/// The rays of a beam in lanes, for wide ones: a triangle is tested against all of them at once.
+struct alignas(64) RayGroup {
+  float origin[3][kBeamRays];
+  float t[kBeamRays];  ///< as in BatchRay
+  float dir[3][kBeamRays];
+  float dir_max[kBeamRays];
+  std::uint32_t ids[kBeamRays];  ///< as in BatchRay, before anything was hit
+};
+
+/// Corners of a leaf's triangles, in lanes.
+struct GroupCorners {
+  alignas(64) float of[3][3][kMaxTreeLeaf];  ///< [corner][axis]
+};
+
 /// A node on the way down, and the rays that met its box.
 struct ListLevel {
   TreeChild children[kTreeWidth];  ///< those that rays meet, in the order of their turns
@@ -89,12 +103,15 @@ struct TriangleLanes {
   alignas(64) float normal_error[kMaxTreeLeaf];  ///< likewise, of products with the normal
 };
 
-/// Memory for terms of rays, where there is some.
+/// Memory for terms of rays, and for groups of them, where there is some.
 template <std::uint32_t Rays, bool HasTerms>
 struct TermsMemory {};
 template <std::uint32_t Rays>
 struct TermsMemory<Rays, true> {
   RayTerms terms[Rays];
+  RayGroup groups[Rays / kBeamRays];
+  GroupCorners corners;
+  alignas(64) std::uint32_t pairs[Rays + kBeamRays];  ///< of beams and a leaf's triangles
 };
 
 /// @tparam Rays      of a batch: a multiple of 16.

@@ -263,7 +263,7 @@ class RaySetup {
                          terms->shift);
     }
     missed_ = missed_ & missed;
-    ((octant + Int::load(kWords.of)) | missed).store(words + first);
+    ((octant + Int::load(kWords.of)) | missed).store(words);
     for (std::uint32_t odd = L::kAllBits & ~is_usual.bits(); odd != 0; odd &= odd - 1) {
       const std::uint32_t lane = lowest_bit(odd);
       // The octant does not change.

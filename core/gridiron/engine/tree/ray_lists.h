@@ -12,6 +12,7 @@
 #include <gridiron/engine/tree/list_memory.h>
 #include <gridiron/engine/tree/list_rays.h>
 #include <gridiron/engine/tree/ray_beams.h>
+#include <gridiron/engine/tree/ray_groups.h>
 #include <gridiron/platform/contract.h>
 #include <gridiron/ray/distance.h>
 #include <gridiron/ray/intersect_rays.h>
@@ -71,7 +72,9 @@ class RayLists {
   static constexpr std::uint32_t kBeamRoot = 8, kIsBeam = 1;
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
-  static constexpr bool kHasBeams = kUsesBeams<L> && Memory::kHasBeams;
+  // Wide lanes with memory for groups test their rays at once.
+  static constexpr bool kHasGroups = L::kCount > 4 && Memory::kHasTerms && Memory::kHasBeams;
+  static constexpr bool kHasBeams = kHasGroups || (kUsesBeams<L> && Memory::kHasBeams);
   static_assert(!kHasBeams || Memory::template kHoldsBeams<L>);
   static constexpr std::uint32_t kRoots = kHasBeams ? 2 * kBeamRoot : kBeamRoot;
   [[nodiscard]] static std::uint32_t sum_of(const std::uint32_t* counts) {
@@ -127,7 +130,8 @@ class RayLists {
   GRIDIRON_INLINE void list_by_lanes(std::uint32_t count, float largest, std::uint32_t* unsorted, std::uint32_t* begins,
                                      std::uint32_t* counts) {
     // Copies of the last ray fill the last lanes. They are listed nowhere.
-    for (std::uint32_t i = count; i % L::kCount != 0; ++i) memory_.rays[i] = memory_.rays[count - 1];
+    static constexpr std::uint32_t kFilled = kHasGroups ? kBeamRays : static_cast<std::uint32_t>(L::kCount);
+    for (std::uint32_t i = count; i % kFilled != 0; ++i) memory_.rays[i] = memory_.rays[count - 1];
     shares_origin_ = false;
     if constexpr (kHasBeams) {
       if (question_.are_neighbors) shares_origin_ = have_one_origin(memory_.rays, count);
@@ -137,7 +141,9 @@ class RayLists {
                               ? set_up_by_lanes<kHasTerms>(count, largest, unsorted)
                               : set_up_by_lanes<false>(count, largest, unsorted);
     std::uint32_t words = count;
-    if constexpr (kHasBeams) {
+    if constexpr (kHasGroups) {
+      words = listed_;
+    } else if constexpr (kHasBeams) {
       if (question_.are_neighbors) {
         words = list_beams(unsorted, count, largest, counts);
         for (std::uint32_t octant = 0; octant < 8; ++octant) {
@@ -160,17 +166,57 @@ class RayLists {
   [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t set_up_by_lanes(std::uint32_t count, float largest,
                                                                std::uint32_t* unsorted) {
     RaySetup<L, kSetsTerms> setup(largest);
-    for (std::uint32_t i = 0; i < count; i += L::kCount) {
-      RayTerms* terms = nullptr;
-      if constexpr (kSetsTerms) terms = memory_.terms + i;
-      setup.add(memory_.rays + i, terms, i, unsorted);
+    std::uint32_t groups = 0;
+    if constexpr (kHasGroups) {
+      groups = set_up_groups(setup, count, largest, unsorted);
+    } else {
+      for (std::uint32_t i = 0; i < count; i += L::kCount) add_rays(setup, i, unsorted + i);
     }
     wide_.uses_terms = false;
     if constexpr (kSetsTerms) {
       const float farthest[3] = {setup.farthest(0), setup.farthest(1), setup.farthest(2)};
       wide_.uses_terms = wide_.terms.set_up(memory_.terms, farthest, largest);
     }
-    return setup.octants();
+    return setup.octants() | groups;
+  }
+  template <bool kSetsTerms>
+  GRIDIRON_INLINE void add_rays(RaySetup<L, kSetsTerms>& setup, std::uint32_t first, std::uint32_t* words) {
+    RayTerms* terms = nullptr;
+    if constexpr (kSetsTerms) terms = memory_.terms + first;
+    setup.add(memory_.rays + first, terms, first, words);
+  }
+  // Makes groups of neighbours, and sets up the rays of those that make none. @returns the groups' roots, as bits.
+  template <bool kSetsTerms>
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t set_up_groups(RaySetup<L, kSetsTerms>& setup, std::uint32_t count,
+                                                            float largest, std::uint32_t* words) {
+    // Lists of rays, and of beams after them, will take less than what lies before.
+    std::uint32_t* const beams = memory_.arena + 2 * Memory::kRays;
+    static_assert(Memory::kArenaWords >= 4 * Memory::kRays && Memory::kRays >= 256);
+    std::uint32_t roots = 0, tried = 0, made = 0;
+    const bool tries = question_.are_neighbors && !question_.trusts_floats;
+    listed_ = 0;
+    for (std::uint32_t first = 0; first < count; first += kBeamRays) {
+      if (tries && tried - made < kVainBeams + tried / 4) {
+        std::uint32_t octant = 0;
+        const std::uint32_t beam = first / kBeamRays;
+        const std::uint32_t axis =
+            make_group<L>(memory_.rays + first, largest, memory_.groups[beam], memory_.beams.of[beam], octant);
+        ++tried;
+        work_.add(Work::kListBeam);
+        if (axis != kNoBeam) {
+          beams[made] = beam_word(beam, axis, octant) | beam_mark(octant);
+          ++made;
+          roots |= 1u << (kBeamRoot + octant);
+          continue;
+        }
+      }
+      for (std::uint32_t i = 0; i < kBeamRays; i += L::kCount) add_rays(setup, first + i, words + listed_ + i);
+      const std::uint32_t rest = count - first;
+      listed_ += rest < kBeamRays ? rest : kBeamRays;
+    }
+    for (std::uint32_t i = 0; i < made; ++i) words[listed_ + i] = beams[i];
+    listed_ += made;
+    return roots;
   }
   // What tells a beam from rays among unsorted words: to wide lanes that it misses all other roots.
   [[nodiscard]] static GRIDIRON_INLINE std::uint32_t beam_mark([[maybe_unused]] std::uint32_t octant) {
@@ -244,6 +290,12 @@ class RayLists {
       const std::uint32_t selected = select(level, depth);
       if (selected == 0) continue;
       if (child.is_leaf()) {
+        if constexpr (kHasGroups) {
+          if (has_beams(depth)) {
+            GRIDIRON_TRY(visit_leaf_by_groups(child, memory_.arena + level.end, selected));
+            continue;
+          }
+        }
         GRIDIRON_TRY(visit_leaf(child, memory_.arena + level.end, selected));
       } else {
         ++depth;
@@ -322,7 +374,7 @@ class RayLists {
         open = mark_beams<L>(*node, memory_.beams.of, memory_.arena + list, count, work_);
         work_.charge_to(Work::kListNode);
         level.end = step_up(list + count);
-        are_rays = has_leaf(*node, open);
+        are_rays = !kHasGroups && has_leaf(*node, open);
         for (std::uint32_t part = 0; part < kParts; ++part) level.set_part(part, list, count);
         if (!are_rays) {
           beam_levels_ |= bit;
@@ -446,6 +498,126 @@ class RayLists {
     return Status::kOk;
   }
 
+  // The triangles of a leaf that beams meet, one after the other, against all rays of each beam.
+  [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf_by_groups(TreeChild leaf, const std::uint32_t* list,
+                                                             std::uint32_t count) {
+    const VertexTriangle* records = nullptr;
+    GRIDIRON_TRY(source_.leaf(leaf, records));
+    work_.add(share_origin() ? Work::kListSharedLeaf : Work::kListLeaf);
+    set_up_leaf<L>(records, leaf.count(), memory_.triangles, &memory_.corners);
+    for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.beams.own_ids[i] = no_hit(records[i].triangle_id);
+    if (!shares_origin_) return test_groups<LeafLanes<L, true, true>>(records, leaf.count(), list, count);
+    set_up_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
+    return test_groups<SharedLanes<L, true, true>>(records, leaf.count(), list, count);
+  }
+  // First the pairs of a beam and a triangle, then those that floats leave open for some rays, then these: each step
+  // without a branch that depends on a pair.
+  template <class OneTriangle>
+  [[nodiscard]] GRIDIRON_INLINE Status test_groups(const VertexTriangle* records, std::uint32_t triangle_count,
+                                                   const std::uint32_t* list, std::uint32_t count) {
+    std::uint32_t* const pairs = memory_.pairs;
+    std::uint32_t pair_count = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t beam = beam_index(list[i]);
+      const std::uint32_t met =
+          triangles_in_beam<L>(memory_.beams.of[beam], beam_axis(list[i]), memory_.corners, triangle_count);
+      for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount) {
+        const std::uint32_t here = met >> base & L::kAllBits;
+        L::compress(L::Int::load(kLaneNumbers + base) + L::Int::splat(beam * kTreeWidth), here, pairs + pair_count);
+        pair_count += count_bits(here);
+      }
+    }
+    work_.add(share_origin() ? Work::kListSharedGroup : Work::kListTriangleGroup, pair_count);
+    std::uint32_t open_count = 0;
+    for (std::uint32_t i = 0; i < pair_count; ++i) {
+      const std::uint32_t pair = pairs[i], triangle = pair % kTreeWidth;
+      const RayGroup& group = memory_.groups[pair / kTreeWidth];
+      const OneTriangle lanes = one_triangle<OneTriangle>(triangle);
+      std::uint32_t open = 0;
+      for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
+        open |= lanes.candidates(LeafRay<L>(group, base), L::equal(memory_.beams.own_ids[triangle], group.ids + base));
+      }
+      pairs[open_count] = pair;
+      open_count += open != 0 ? std::uint32_t{1} : std::uint32_t{0};
+    }
+    for (std::uint32_t i = 0; i < open_count; ++i) {
+      const std::uint32_t beam = pairs[i] / kTreeWidth, triangle = pairs[i] % kTreeWidth;
+      const OneTriangle lanes = one_triangle<OneTriangle>(triangle);
+      RayGroup& group = memory_.groups[beam];
+      float most_t = -1.0f;
+      for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
+        const std::uint32_t own = L::equal(memory_.beams.own_ids[triangle], group.ids + base).bits();
+        const LeafAnswer<L> answer = lanes.test(LeafRay<L>(group, base), L::kAllBits & ~own);
+        if ((answer.inside | answer.unsure) != 0) {
+          GRIDIRON_TRY(decide_group(beam * kBeamRays, base, answer, records[triangle]));
+        }
+        const float most = L::horizontal_max(Float::load(group.t + base));
+        most_t = most > most_t ? most : most_t;
+      }
+      shorten_beam(memory_.beams.of[beam], most_t);
+    }
+    return Status::kOk;
+  }
+  alignas(64) static constexpr std::uint32_t kLaneNumbers[kTreeWidth] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                                         8, 9, 10, 11, 12, 13, 14, 15};
+  template <class OneTriangle>
+  [[nodiscard]] GRIDIRON_INLINE OneTriangle one_triangle(std::uint32_t triangle) const {
+    if constexpr (requires { OneTriangle(memory_.triangles, triangle, memory_.beams.own_ids); }) {
+      return OneTriangle(memory_.triangles, triangle, memory_.beams.own_ids);
+    } else {
+      return OneTriangle(memory_.triangles, triangle);
+    }
+  }
+  // Decides one triangle for the rays of a group, from `base` on, that floats do not rule out.
+  // @param first  ray of the group.
+  [[nodiscard]] GRIDIRON_INLINE Status decide_group(std::uint32_t first, std::uint32_t base,
+                                                    const LeafAnswer<L>& answer, const VertexTriangle& triangle) {
+    const RayGroup& group = memory_.groups[first / kBeamRays];
+    BatchRay* const rays = memory_.rays + first + base;
+    const bool any_hit = question_.any_hit;
+    std::uint32_t passed = answer.inside;
+    for (std::uint32_t rest = answer.unsure; rest != 0; rest &= rest - 1) {
+      const std::uint32_t lane = lowest_bit(rest);
+      rays[lane].dir_max = group.dir_max[base + lane];
+      if (passes_through(rays[lane], triangle, work_)) passed |= 1u << lane;
+    }
+    work_.add(Work::kListCandidate, count_bits(passed));
+    if (any_hit) {
+      for (std::uint32_t sure = passed & answer.within; sure != 0; sure &= sure - 1) {
+        end_ray(rays[lowest_bit(sure)], triangle.triangle_id);
+      }
+      passed &= ~answer.within;
+    }
+    if (passed == 0) return Status::kOk;
+    PlaneNormal plane;
+    set_up_plane_normal(triangle, plane);
+    alignas(64) float distance[L::kCount];
+    for (std::uint32_t open = group_distances<L>(group, base, triangle, plane, distance) & passed; open != 0;
+         open &= open - 1) {
+      const std::uint32_t lane = lowest_bit(open);
+      rays[lane].dir_max = group.dir_max[base + lane];
+      distance[lane] = ray_distance(rays[lane], triangle, work_);
+    }
+    const Float t = Float::load(distance);
+    const std::uint32_t near = ((t > Float(0.0f)) & (t <= Float::load(group.t + base))).bits() & passed;
+    for (std::uint32_t rest = near; rest != 0; rest &= rest - 1) {
+      const std::uint32_t lane = lowest_bit(rest);
+      BatchRay& ray = rays[lane];
+      if (any_hit) {
+        end_ray(ray, triangle.triangle_id);
+        continue;
+      }
+      if (distance[lane] == ray.t && ray.has_hit()) {
+        bool is_first = false;
+        GRIDIRON_TRY(comes_before(ray, triangle, is_first));
+        if (!is_first) continue;
+      }
+      set_t(ray, distance[lane]);
+      ray.id = triangle.triangle_id;
+    }
+    return Status::kOk;
+  }
+
   // @returns the first ray of a list, from `begin` on, that floats do not rule out for all triangles of a group, or the
   // list's end. Wide lanes stop rays on the way that surely hit one, if any hit will do: to leave and come back loads
   // all lanes again. @param answer  gets what floats say.
@@ -561,6 +733,10 @@ class RayLists {
   GRIDIRON_INLINE void set_t(BatchRay& ray, float t) {
     ray.t = t;
     if constexpr (kHasTerms) memory_.terms[&ray - memory_.rays].t = t;
+    if constexpr (kHasGroups) {
+      const auto place = static_cast<std::uint32_t>(&ray - memory_.rays);
+      memory_.groups[place / kBeamRays].t[place % kBeamRays] = t;
+    }
   }
 
   // A ray of no length meets no box any more.
@@ -603,6 +779,7 @@ class RayLists {
   RayQuestion question_{};
   std::uint32_t ray_count_ = 0, dead_count_ = 0;
   std::uint32_t beam_levels_ = 0;  // bit i: the lists of level i are of beams
+  std::uint32_t listed_ = 0;       // words of the batch's rays and beams
   bool shares_origin_ = false;
   // What wide lanes alone keep.
   struct Wide {
