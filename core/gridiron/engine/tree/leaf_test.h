@@ -91,6 +91,11 @@ GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t c
     if constexpr (L::kCount > 4) {
       if (all_corners != nullptr) {
         for (int word = 0; word < 9; ++word) corners[word].store(all_corners->of[word / 3][word % 3] + base);
+        for (int axis = 0; axis < 3; ++axis) {
+          const Float a = corners[axis], b = corners[3 + axis], c = corners[6 + axis];
+          L::min(L::min(a, b), c).store(all_corners->low[axis] + base);
+          L::max(L::max(a, b), c).store(all_corners->high[axis] + base);
+        }
       }
     }
     Float e1[3], e2[3], sizes(kLeastListSize), edges(kLeastListSize);

@@ -62,7 +62,8 @@ struct BeamMemory {
 template <>
 struct BeamMemory<0> {};
 
-/// The rays of a beam in lanes, for wide ones: a triangle is tested against all of them at once.
+/// Neighbouring rays in lanes, for wide ones: a triangle is tested against all of them at once. Between the planes of
+/// ray_groups.h, boxes are.
 struct alignas(64) RayGroup {
   float origin[3][kBeamRays];
   float t[kBeamRays];  ///< as in BatchRay
@@ -71,9 +72,18 @@ struct alignas(64) RayGroup {
   std::uint32_t ids[kBeamRays];  ///< as in BatchRay, before anything was hit
 };
 
-/// Corners of a leaf's triangles, in lanes.
+/// What bounds a group, seen from a corner of it: ray_groups.h.
+struct alignas(64) GroupBeam {
+  float corner[3];
+  float turn;          ///< 1; -1: they run backwards along their axis
+  float planes[4][4];  ///< slope or 0 if it is below 0, slope or 0 if it is above, offset; a bound beside the plane
+};
+
+/// Corners of a leaf's triangles, and the boxes around these, in lanes.
 struct GroupCorners {
   alignas(64) float of[3][3][kMaxTreeLeaf];  ///< [corner][axis]
+  alignas(64) float low[3][kMaxTreeLeaf];
+  alignas(64) float high[3][kMaxTreeLeaf];
 };
 
 /// A node on the way down, and the rays that met its box.
@@ -110,6 +120,8 @@ template <std::uint32_t Rays>
 struct TermsMemory<Rays, true> {
   RayTerms terms[Rays];
   RayGroup groups[Rays / kBeamRays];
+  GroupBeam group_beams[Rays / kBeamRays];
+  float reaches[Rays / kBeamRays];  ///< of groups: how far they look along their axis, from the corner
   GroupCorners corners;
   alignas(64) std::uint32_t pairs[Rays + kBeamRays];  ///< of beams and a leaf's triangles
 };

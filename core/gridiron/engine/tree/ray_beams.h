@@ -48,70 +48,6 @@ inline constexpr std::uint32_t kVainBeams = 1;
 /// No axis: rays that make no beam.
 inline constexpr std::uint32_t kNoBeam = 3;
 
-/// The least and greatest places where segments of rays begin and end: quads of coordinates.
-struct BeamEnds {
-  Lanes<4>::Float low_start, high_start, low_end, high_end;
-};
-
-/// What the ends of segments say of their beam.
-struct BeamShape {
-  Lanes<4>::Float low_slope, high_slope;
-  float most;        ///< the greatest |coordinate| of ends
-  bool is_narrow;    ///< they make a beam
-  bool is_forward;
-
-  /// @param far  twice the scene's largest |coordinate|.
-  GRIDIRON_INLINE BeamShape(const BeamEnds& ends, std::uint32_t axis, float far)
-      : low_slope(0.0f), high_slope(0.0f), most(0.0f), is_narrow(false), is_forward(false) {
-    using Quad = Lanes<4>;
-    using Float = Quad::Float;
-    const Float sizes = Quad::max(Quad::max(Quad::abs(ends.low_start), Quad::abs(ends.high_start)),
-                                  Quad::max(Quad::abs(ends.low_end), Quad::abs(ends.high_end)));
-    most = Quad::horizontal_max(sizes);
-    if (!(most <= far * kFarBeam)) return;
-    const Float half(0.5f);
-    const float length =
-        Quad::lane((ends.low_end + ends.high_end) * half - (ends.low_start + ends.high_start) * half, axis);
-    is_forward = length > 0.0f;
-    const Float spread(magnitude(length) * kBeamWidth);
-    const std::uint32_t others = 7u & ~(1u << axis);
-    const std::uint32_t wide =
-        ((ends.high_start - ends.low_start > spread) | (ends.high_end - ends.low_end > spread)).bits();
-    is_narrow = (wide & others) == 0;
-    low_slope = (ends.low_end - ends.low_start) / Float(length);
-    high_slope = (ends.high_end - ends.high_start) / Float(length);
-  }
-};
-
-/// Writes a beam. @param low_offset  the least distances of ends from the lower planes, @param high_offset  the greatest
-/// from the upper ones: quads of axes. @param dir_size  the greatest |component| of a direction along the axis.
-GRIDIRON_INLINE void write_beam(const BeamEnds& ends, const BeamShape& shape, Lanes<4>::Float low_offset,
-                                Lanes<4>::Float high_offset, float dir_size, std::uint32_t axis, float far,
-                                RayBeam& beam) {
-  using Quad = Lanes<4>;
-  using Float = Quad::Float;
-  const float margin = (shape.most > far ? shape.most : far) * kBeamMargin;
-  low_offset = low_offset - (Float(1.0f) + Quad::abs(shape.low_slope)) * Float(margin);
-  high_offset = high_offset + (Float(1.0f) + Quad::abs(shape.high_slope)) * Float(margin);
-  const auto plane = [](Float slope, Float offset, std::uint32_t lane, float* words) {
-    const float value = Quad::lane(slope, lane), none = 0.0f;
-    words[0] = value > none ? value : none;
-    words[1] = value > none ? none : value;
-    words[2] = Quad::lane(offset, lane);
-  };
-  const std::uint32_t u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-  plane(shape.low_slope, low_offset, u, beam.planes[0]);
-  plane(shape.high_slope, high_offset, u, beam.planes[1]);
-  plane(shape.low_slope, low_offset, v, beam.planes[2]);
-  plane(shape.high_slope, high_offset, v, beam.planes[3]);
-  const bool is_forward = shape.is_forward;
-  beam.planes[0][3] = Quad::lane(is_forward ? ends.low_start : ends.low_end, axis) - margin;
-  beam.planes[1][3] = Quad::lane(is_forward ? ends.high_end : ends.high_start, axis) + margin;
-  beam.planes[2][3] =
-      is_forward ? Quad::lane(ends.high_start, axis) + margin : Quad::lane(ends.low_start, axis) - margin;
-  beam.planes[3][3] = is_forward ? dir_size : -dir_size;
-}
-
 /// Makes the beam of some rays. @param rays  of one octant, prepared for lists, 1 to kBeamRays.
 /// @param largest  as in RayLists::trace().
 /// @returns its axis, or kNoBeam.
@@ -123,8 +59,7 @@ GRIDIRON_OUTLINE inline std::uint32_t make_beam(const BatchRay* rays, std::uint3
   const std::uint32_t axis = x > y ? (x > z ? 0u : 2u) : (y > z ? 1u : 2u);
   const float far = 2.0f * largest;
   Float starts[kBeamRays], ends[kBeamRays];
-  BeamEnds all{Float(kFloatMax), Float(-kFloatMax), Float(kFloatMax), Float(-kFloatMax)};
-  Float dir_size(0.0f);
+  Float low_start(kFloatMax), high_start(-kFloatMax), low_end(kFloatMax), high_end(-kFloatMax), dir_size(0.0f);
   bool are_bounded = true;
   for (std::uint32_t i = 0; i < count; ++i) {
     const BatchRay& ray = rays[i];
@@ -137,24 +72,48 @@ GRIDIRON_OUTLINE inline std::uint32_t make_beam(const BatchRay* rays, std::uint3
     const Float end = start + Float(t) * dir;
     starts[i] = start;
     ends[i] = end;
-    all.low_start = Quad::min(start, all.low_start);
-    all.high_start = Quad::max(start, all.high_start);
-    all.low_end = Quad::min(end, all.low_end);
-    all.high_end = Quad::max(end, all.high_end);
+    low_start = Quad::min(start, low_start);
+    high_start = Quad::max(start, high_start);
+    low_end = Quad::min(end, low_end);
+    high_end = Quad::max(end, high_end);
     dir_size = Quad::max(Quad::abs(dir), dir_size);
   }
-  if (!are_bounded) return kNoBeam;
-  const BeamShape shape(all, axis, far);
-  if (!shape.is_narrow) return kNoBeam;
+  const Float sizes = Quad::max(Quad::max(Quad::abs(low_start), Quad::abs(high_start)),
+                                Quad::max(Quad::abs(low_end), Quad::abs(high_end)));
+  const float most = Quad::horizontal_max(sizes);
+  if (!are_bounded || !(most <= far * kFarBeam)) return kNoBeam;
+  const Float half(0.5f);
+  const float length = Quad::lane((low_end + high_end) * half - (low_start + high_start) * half, axis);
+  const bool is_forward = length > 0.0f;
+  const Float spread(magnitude(length) * kBeamWidth);
+  const std::uint32_t others = 7u & ~(1u << axis);
+  const std::uint32_t wide = ((high_start - low_start > spread) | (high_end - low_end > spread)).bits();
+  if ((wide & others) != 0) return kNoBeam;
+  const Float low_slope = (low_end - low_start) / Float(length), high_slope = (high_end - high_start) / Float(length);
   Float low_offset(kFloatMax), high_offset(-kFloatMax);
   for (std::uint32_t i = 0; i < count; ++i) {
     const Float start_w = Float(Quad::lane(starts[i], axis)), end_w = Float(Quad::lane(ends[i], axis));
-    low_offset =
-        Quad::min(low_offset, Quad::min(starts[i] - shape.low_slope * start_w, ends[i] - shape.low_slope * end_w));
-    high_offset =
-        Quad::max(high_offset, Quad::max(starts[i] - shape.high_slope * start_w, ends[i] - shape.high_slope * end_w));
+    low_offset = Quad::min(low_offset, Quad::min(starts[i] - low_slope * start_w, ends[i] - low_slope * end_w));
+    high_offset = Quad::max(high_offset, Quad::max(starts[i] - high_slope * start_w, ends[i] - high_slope * end_w));
   }
-  write_beam(all, shape, low_offset, high_offset, Quad::lane(dir_size, axis), axis, far, beam);
+  const float margin = (most > far ? most : far) * kBeamMargin;
+  low_offset = low_offset - (Float(1.0f) + Quad::abs(low_slope)) * Float(margin);
+  high_offset = high_offset + (Float(1.0f) + Quad::abs(high_slope)) * Float(margin);
+  const auto plane = [](Float slope, Float offset, std::uint32_t lane, float* words) {
+    const float value = Quad::lane(slope, lane), none = 0.0f;
+    words[0] = value > none ? value : none;
+    words[1] = value > none ? none : value;
+    words[2] = Quad::lane(offset, lane);
+  };
+  const std::uint32_t u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+  plane(low_slope, low_offset, u, beam.planes[0]);
+  plane(high_slope, high_offset, u, beam.planes[1]);
+  plane(low_slope, low_offset, v, beam.planes[2]);
+  plane(high_slope, high_offset, v, beam.planes[3]);
+  beam.planes[0][3] = Quad::lane(is_forward ? low_start : low_end, axis) - margin;
+  beam.planes[1][3] = Quad::lane(is_forward ? high_end : high_start, axis) + margin;
+  beam.planes[2][3] = is_forward ? Quad::lane(high_start, axis) + margin : Quad::lane(low_start, axis) - margin;
+  beam.planes[3][3] = is_forward ? Quad::lane(dir_size, axis) : -Quad::lane(dir_size, axis);
   return axis;
 }
 
@@ -216,32 +175,6 @@ struct BeamPlanes {
     return ((first > last) | (Float::load(node.high[u] + base) < least(0)) |
             (Float::load(node.low[u] + base) > most(1)) | (Float::load(node.high[v] + base) < least(2)) |
             (Float::load(node.low[v] + base) > most(3)))
-        .bits();
-  }
-
-  /// @returns the triangles of a leaf, from `base` on, that lie outside one of the beam's planes, as bits.
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_by(const GroupCorners& corners, std::uint32_t axis,
-                                                        std::uint32_t base) const {
-    const std::uint32_t u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-    Float slopes[4], along[3];
-    for (int plane = 0; plane < 4; ++plane) slopes[plane] = up[plane] + down[plane];
-    for (int corner = 0; corner < 3; ++corner) along[corner] = Float::load(corners.of[corner][axis] + base);
-    const auto place = [&](int corner, int plane) GRIDIRON_INLINE_LAMBDA {
-      return L::bounded_sum(slopes[plane], along[corner], offset[plane]);
-    };
-    const auto are_below = [&](std::uint32_t other, int plane) GRIDIRON_INLINE_LAMBDA {
-      return (Float::load(corners.of[0][other] + base) < place(0, plane)) &
-             (Float::load(corners.of[1][other] + base) < place(1, plane)) &
-             (Float::load(corners.of[2][other] + base) < place(2, plane));
-    };
-    const auto are_above = [&](std::uint32_t other, int plane) GRIDIRON_INLINE_LAMBDA {
-      return (Float::load(corners.of[0][other] + base) > place(0, plane)) &
-             (Float::load(corners.of[1][other] + base) > place(1, plane)) &
-             (Float::load(corners.of[2][other] + base) > place(2, plane));
-    };
-    return (are_below(u, 0) | are_above(u, 1) | are_below(v, 2) | are_above(v, 3) |
-            (L::max(L::max(along[0], along[1]), along[2]) < low_w) |
-            (L::min(L::min(along[0], along[1]), along[2]) > high_w))
         .bits();
   }
 };

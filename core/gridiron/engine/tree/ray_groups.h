@@ -15,17 +15,45 @@
 
 namespace gridiron {
 
+// A group runs along an axis w; u and v are the others, in the order of the axes. Seen from its corner, w is measured the
+// way that the rays run: no ray begins at w < 0. With slopes m = d.u / |d.w| of its rays, each of which begins at (U, W),
+// s <= m for all of them and the offset o <= U - s W for all, a point of any ray has u >= s w + o: that is the lower
+// plane of u, likewise the upper one, and those of v.
+//
+// With e = 2^-23, the largest relative error of an operation in any rounding mode: a slope has an error of 2 e |m|; U
+// and W one of e each of themselves, and an offset 3 e (|U| + |s| W) with them. In the test of a box its sides seen from
+// the corner have one of e; s w one of 2 e with that, and the sum rounds once more. Where the box just touches, its u is
+// |s| w + |o| at most. So kGroupMargin of each slope, and of |U| + |s| W, is enough. What is lost below the least normal
+// float is less than kLeastGroupMargin of the scene.
+inline constexpr float kGroupMargin = 0x1p-19f, kLeastGroupMargin = 0x1p-40f;
+/// Groups whose slopes differ by more would meet too much, or whose rays begin farther apart, in the length of the
+/// group, or the scene's size.
+inline constexpr float kGroupSpread = 0.25f, kGroupWidth = 0.1f;
+
+/// How far along its axis a group looks from its corner. @returns below 0: its rays have all been answered.
+template <class L>
+[[nodiscard]] GRIDIRON_INLINE float group_reach(const RayGroup& group, const GroupBeam& beam, std::uint32_t axis) {
+  using Float = typename L::Float;
+  Float reach(-1.0f);
+  for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
+    const Float start = (Float::load(group.origin[axis] + base) - Float(beam.corner[axis])) * Float(beam.turn);
+    const Float t = Float::load(group.t + base);
+    const Float end = L::bounded_sum(t, L::abs(Float::load(group.dir[axis] + base)), start);
+    reach = L::max(L::select(t < Float(0.0f), Float(-1.0f), end), reach);
+  }
+  return L::horizontal_max(reach) * (1.0f + kGroupMargin);
+}
+
 /// Puts kBeamRays rays in lanes and makes their beam.
 /// @param rays     in any octants. @param largest  as in RayLists::trace().
-/// @param octant   gets that of the first ray.
+/// @param reach    gets group_reach(). @param octant  gets that of the first ray.
 /// @returns the beam's axis; kNoBeam if they make none, or floats cannot test one of them.
 template <class L>
 [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t make_group(const BatchRay* rays, float largest, RayGroup& group,
-                                                        RayBeam& beam, std::uint32_t& octant) {
+                                                        GroupBeam& beam, float& reach, std::uint32_t& octant) {
   using Float = typename L::Float;
-  using Int = typename L::Int;
   static constexpr std::uint32_t kVectors = kBeamRays / L::kCount;
-  const float far = 2.0f * largest, farthest = far * kFarBeam;
+  const float farthest = largest * kFarBeam;
   const Float most_place(farthest < kGreatestListPlace ? farthest : kGreatestListPlace);
   std::uint32_t usual = L::kAllBits;
   for (std::uint32_t i = 0; i < kVectors; ++i) {
@@ -33,81 +61,168 @@ template <class L>
     Float place[4], dir[4];
     load_ray_words<L>(rays[base].origin, place);
     load_ray_words<L>(rays[base].dir, dir);
+    Float farthest_place = L::abs(place[0]);
     for (int axis = 0; axis < 3; ++axis) {
       place[axis].store(group.origin[axis] + base);
       dir[axis].store(group.dir[axis] + base);
-      usual &= (L::abs(place[axis]) <= most_place).bits();
+      if (axis != 0) usual &= (L::abs(place[axis]) <= most_place).bits();
     }
     const Float longest = L::max(L::max(L::abs(dir[0]), L::abs(dir[1])), L::abs(dir[2]));
-    usual &= ((longest >= Float(kLeastListDirection)) & (longest <= Float(kGreatestListDirection))).bits();
+    usual &= ((farthest_place <= most_place) & (place[3] > Float(0.0f)) & (longest >= Float(kLeastListDirection)) &
+              (longest <= Float(kGreatestListDirection)))
+                 .bits();
     place[3].store(group.t + base);
     longest.store(group.dir_max + base);
-    Int{L::words_of(dir[3])}.store(group.ids + base);
+    L::words_of(dir[3]).store(group.ids + base);
   }
   if (usual != L::kAllBits || !(largest <= kGreatestListPlace)) return kNoBeam;
   const float x = magnitude(group.dir[0][0]), y = magnitude(group.dir[1][0]), z = magnitude(group.dir[2][0]);
   const std::uint32_t axis = x > y ? (x > z ? 0u : 2u) : (y > z ? 1u : 2u);
-  octant = (group.dir[0][0] < 0.0f ? 1u : 0u) | (group.dir[1][0] < 0.0f ? 2u : 0u) |
-           (group.dir[2][0] < 0.0f ? 4u : 0u);
+  const std::uint32_t others[2] = {axis == 0 ? 1u : 0u, axis == 2 ? 1u : 2u};
+  octant = (group.dir[0][0] < 0.0f ? 1u : 0u) | (group.dir[1][0] < 0.0f ? 2u : 0u) | (group.dir[2][0] < 0.0f ? 4u : 0u);
 
-  Float starts[3][kVectors], ends[3][kVectors];
-  std::uint32_t bounded = L::kAllBits, backwards = 0, forwards = 0;
-  Float dir_size(0.0f);
+  beam.turn = group.dir[axis][0] < 0.0f ? -1.0f : 1.0f;
+  const Float turn(beam.turn);
+  Float along[kVectors], least_along(kFloatMax);
+  std::uint32_t forward = L::kAllBits;
   for (std::uint32_t i = 0; i < kVectors; ++i) {
-    const std::uint32_t base = i * L::kCount;
-    const Float dir_w = Float::load(group.dir[axis] + base), start_w = Float::load(group.origin[axis] + base);
-    const Float size = L::abs(dir_w);
-    // Behind this the rest of a ray is outside the scene.
-    const Float t = L::min((L::abs(start_w) + Float(far)) / size, Float::load(group.t + base));
-    bounded &= ((t > Float(0.0f)) & (t < Float(kFloatMax))).bits();
-    const std::uint32_t turned = (dir_w < Float(0.0f)).bits();
-    backwards |= turned, forwards |= ~turned;
-    dir_size = L::max(size, dir_size);
-    for (int k = 0; k < 3; ++k) {
-      starts[k][i] = Float::load(group.origin[k] + base);
-      ends[k][i] = L::bounded_sum(t, Float::load(group.dir[k] + base), starts[k][i]);
-    }
+    const Float dir = Float::load(group.dir[axis] + i * L::kCount) * turn;
+    forward &= (dir > Float(0.0f)).bits();
+    along[i] = Float::load(group.origin[axis] + i * L::kCount) * turn;
+    least_along = L::min(along[i], least_along);
   }
-  // Nor NaN. All run the same way along the axis.
-  if (bounded != L::kAllBits || (backwards != 0 && (forwards & L::kAllBits) != 0)) return kNoBeam;
-  const auto least = [](const Float (&values)[kVectors]) GRIDIRON_INLINE_LAMBDA {
-    Float low = values[0];
-    if constexpr (kVectors > 1) low = L::min(low, values[1]);
-    return L::horizontal_min(low);
-  };
-  const auto most = [](const Float (&values)[kVectors]) GRIDIRON_INLINE_LAMBDA {
-    Float high = values[0];
-    if constexpr (kVectors > 1) high = L::max(high, values[1]);
-    return L::horizontal_max(high);
-  };
-  using Quad = Lanes<4>;
-  const auto quad = [](float a, float b, float c) GRIDIRON_INLINE_LAMBDA {
-    return Quad::Float(Quad::FloatVector{a, b, c, a});
-  };
-  const BeamEnds all{quad(least(starts[0]), least(starts[1]), least(starts[2])),
-                     quad(most(starts[0]), most(starts[1]), most(starts[2])),
-                     quad(least(ends[0]), least(ends[1]), least(ends[2])),
-                     quad(most(ends[0]), most(ends[1]), most(ends[2]))};
-  const BeamShape shape(all, axis, far);
-  if (!shape.is_narrow || !(shape.most <= kGreatestListPlace)) return kNoBeam;
-  // Of the axis itself 0: nothing asks for it.
-  float low_offset[3] = {}, high_offset[3] = {};
-  const Float* const along_start = starts[axis];
-  const Float* const along_end = ends[axis];
-  for (std::uint32_t k = 0; k < 3; ++k) {
-    if (k == axis) continue;
-    const Float low_slope(Quad::lane(shape.low_slope, k)), high_slope(Quad::lane(shape.high_slope, k));
-    Float lows[kVectors], highs[kVectors];
+  if (forward != L::kAllBits) return kNoBeam;
+  const float nearest = L::horizontal_min(least_along);
+  beam.corner[axis] = nearest * beam.turn;
+  reach = group_reach<L>(group, beam, axis);
+  const float length = reach < largest ? reach : largest;
+  for (std::uint32_t k = 0; k < 2; ++k) {
+    const float corner = group.origin[others[k]][0];
+    beam.corner[others[k]] = corner;
+    Float low_slope(kFloatMax), high_slope(-kFloatMax), starts[kVectors];
     for (std::uint32_t i = 0; i < kVectors; ++i) {
-      lows[i] = L::min(starts[k][i] - low_slope * along_start[i], ends[k][i] - low_slope * along_end[i]);
-      highs[i] = L::max(starts[k][i] - high_slope * along_start[i], ends[k][i] - high_slope * along_end[i]);
+      const std::uint32_t base = i * L::kCount;
+      const Float slope =
+          Float::load(group.dir[others[k]] + base) / L::abs(Float::load(group.dir[axis] + base));
+      low_slope = L::min(slope, low_slope);
+      high_slope = L::max(slope, high_slope);
+      starts[i] = Float::load(group.origin[others[k]] + base) - Float(corner);
     }
-    low_offset[k] = least(lows);
-    high_offset[k] = most(highs);
+    Float low_start = starts[0], high_start = starts[0];
+    if constexpr (kVectors > 1) low_start = L::min(starts[1], low_start), high_start = L::max(starts[1], high_start);
+    const float lowest_start = L::horizontal_min(low_start), highest_start = L::horizontal_max(high_start);
+    float low = L::horizontal_min(low_slope), high = L::horizontal_max(high_slope);
+    if (!(high - low <= kGroupSpread)) return kNoBeam;
+    low = low - magnitude(low) * kGroupMargin;
+    high = high + magnitude(high) * kGroupMargin;
+    Float low_offset(kFloatMax), high_offset(-kFloatMax);
+    for (std::uint32_t i = 0; i < kVectors; ++i) {
+      const Float away = along[i] - Float(nearest), to_low = Float(low) * away, to_high = Float(high) * away;
+      const Float least_margin(largest * kLeastGroupMargin);
+      const Float size = L::abs(starts[i]);
+      low_offset = L::min(starts[i] - to_low - ((size + L::abs(to_low)) * Float(kGroupMargin) + least_margin),
+                          low_offset);
+      high_offset = L::max(starts[i] - to_high + ((size + L::abs(to_high)) * Float(kGroupMargin) + least_margin),
+                           high_offset);
+    }
+    const float lowest = L::horizontal_min(low_offset), highest = L::horizontal_max(high_offset);
+    if (!(highest - lowest <= kGroupWidth * length)) return kNoBeam;
+    const auto set = [](float slope, float offset, float bound, float* plane) {
+      plane[0] = slope > 0.0f ? slope : 0.0f;
+      plane[1] = slope > 0.0f ? 0.0f : slope;
+      plane[2] = offset;
+      plane[3] = bound;
+    };
+    // Rays that all run up have nothing below their starts.
+    set(low, lowest, low >= 0.0f ? lowest_start : -kFloatMax, beam.planes[2 * k]);
+    set(high, highest, high <= 0.0f ? highest_start : kFloatMax, beam.planes[2 * k + 1]);
   }
-  write_beam(all, shape, quad(low_offset[0], low_offset[1], low_offset[2]),
-             quad(high_offset[0], high_offset[1], high_offset[2]), L::horizontal_max(dir_size), axis, far, beam);
   return axis;
+}
+
+/// A group's beam in all lanes.
+template <class L>
+struct GroupPlanes {
+  using Float = typename L::Float;
+  Float corner[3], up[4], down[4], offset[4], bound[4], turn, reach;
+  std::uint32_t u, v, w;
+  bool is_backwards;
+
+  GRIDIRON_INLINE GroupPlanes(const GroupBeam& beam, float looks, std::uint32_t axis)
+      : turn(beam.turn),
+        reach(looks),
+        u(axis == 0 ? 1 : 0),
+        v(axis == 2 ? 1 : 2),
+        w(axis),
+        is_backwards(beam.turn < 0.0f) {
+    for (int i = 0; i < 3; ++i) corner[i] = Float(beam.corner[i]);
+    for (int i = 0; i < 4; ++i) {
+      up[i] = Float(beam.planes[i][0]);
+      down[i] = Float(beam.planes[i][1]);
+      offset[i] = Float(beam.planes[i][2]);
+      bound[i] = Float(beam.planes[i][3]);
+    }
+  }
+
+  /// @returns the boxes that the group misses, of those from `base` on, as bits. @tparam Boxes  TreeNode, GroupCorners.
+  template <class Boxes>
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_boxes(const Boxes& node, std::uint32_t base) const {
+    const float* const near_side = is_backwards ? node.high[w] : node.low[w];
+    const float* const far_side = is_backwards ? node.low[w] : node.high[w];
+    const Float entry = (Float::load(near_side + base) - corner[w]) * turn,
+                exit = (Float::load(far_side + base) - corner[w]) * turn;
+    const Float first = L::max(entry, Float(0.0f)), last = L::min(exit, reach);
+    const auto least = [&](int plane) GRIDIRON_INLINE_LAMBDA {
+      return L::max(L::bounded_sum(up[plane], first, L::bounded_sum(down[plane], last, offset[plane])), bound[plane]);
+    };
+    const auto most = [&](int plane) GRIDIRON_INLINE_LAMBDA {
+      return L::min(L::bounded_sum(up[plane], last, L::bounded_sum(down[plane], first, offset[plane])), bound[plane]);
+    };
+    return ((first > last) | (Float::load(node.high[u] + base) - corner[u] < least(0)) |
+            (Float::load(node.low[u] + base) - corner[u] > most(1)) |
+            (Float::load(node.high[v] + base) - corner[v] < least(2)) |
+            (Float::load(node.low[v] + base) - corner[v] > most(3)))
+        .bits();
+  }
+
+  /// @returns the triangles of a leaf, from `base` on, that lie outside one of the planes, as bits.
+  [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_by(const GroupCorners& corners, std::uint32_t base) const {
+    Float along[3];
+    for (int i = 0; i < 3; ++i) along[i] = (Float::load(corners.of[i][w] + base) - corner[w]) * turn;
+    auto missed = (L::max(L::max(along[0], along[1]), along[2]) < Float(0.0f)) |
+                  (L::min(L::min(along[0], along[1]), along[2]) > reach);
+    for (int k = 0; k < 2; ++k) {
+      const std::uint32_t other = k == 0 ? u : v;
+      const Float low = up[2 * k] + down[2 * k], high = up[2 * k + 1] + down[2 * k + 1];
+      Float above(-kFloatMax), below(-kFloatMax);
+      for (int i = 0; i < 3; ++i) {
+        const Float place = Float::load(corners.of[i][other] + base) - corner[other];
+        above = L::max(place - L::bounded_sum(low, along[i], offset[2 * k]), above);
+        below = L::max(L::bounded_sum(high, along[i], offset[2 * k + 1]) - place, below);
+      }
+      missed = missed | (above < Float(0.0f)) | (below < Float(0.0f));
+    }
+    return missed.bits();
+  }
+};
+
+/// Marks the boxes of a node that each group of a list misses. @returns those that any group meets.
+template <class L>
+[[nodiscard]] GRIDIRON_OUTLINE std::uint32_t mark_groups(const TreeNode& node, const GroupBeam* beams,
+                                                         const float* reaches, std::uint32_t* list,
+                                                         std::uint32_t count, WorkCounters& work) {
+  work.add(Work::kListBeamNode, count);
+  std::uint32_t closed = kMaskBits;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t word = list[i], beam = beam_index(word);
+    const GroupPlanes<L> planes(beams[beam], reaches[beam], beam_axis(word));
+    std::uint32_t missed = 0;
+    for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount) missed |= planes.missed_boxes(node, base) << base;
+    list[i] = word | missed;
+    closed &= missed;
+  }
+  for (std::uint32_t i = count; i % L::kCount != 0; ++i) list[i] = kMaskBits;
+  return ~closed & kMaskBits;
 }
 
 /// Distances of a group's rays from `base` on to a triangle, as ray_distance() gives them, from doubles alone.
@@ -149,15 +264,13 @@ template <class L>
   return open;
 }
 
-/// @returns the triangles of a leaf that a beam may meet, as bits.
+/// @returns the triangles of a leaf that a group may meet, as bits.
 template <class L>
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t triangles_in_beam(const RayBeam& beam, std::uint32_t axis,
-                                                              const GroupCorners& corners, std::uint32_t count) {
-  const BeamPlanes<L> planes(beam);
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t triangles_in_group(const GroupBeam& beam, float reach, std::uint32_t axis,
+                                                               const GroupCorners& corners, std::uint32_t count) {
+  const GroupPlanes<L> planes(beam, reach, axis);
   std::uint32_t missed = 0;
-  for (std::uint32_t base = 0; base < count; base += L::kCount) {
-    missed |= planes.missed_by(corners, axis, base) << base;
-  }
+  for (std::uint32_t base = 0; base < count; base += L::kCount) missed |= (planes.missed_by(corners, base) | planes.missed_boxes(corners, base)) << base;
   return ~missed & ((2u << (count - 1)) - 1);
 }
 

@@ -200,7 +200,8 @@ class RayLists {
         std::uint32_t octant = 0;
         const std::uint32_t beam = first / kBeamRays;
         const std::uint32_t axis =
-            make_group<L>(memory_.rays + first, largest, memory_.groups[beam], memory_.beams.of[beam], octant);
+            make_group<L>(memory_.rays + first, largest, memory_.groups[beam], memory_.group_beams[beam],
+                          memory_.reaches[beam], octant);
         ++tried;
         work_.add(Work::kListBeam);
         if (axis != kNoBeam) {
@@ -371,7 +372,11 @@ class RayLists {
       const auto bit = std::uint32_t{1} << static_cast<std::uint32_t>(&level - memory_.levels);
       beam_levels_ &= ~bit;
       if (are_beams) {
-        open = mark_beams<L>(*node, memory_.beams.of, memory_.arena + list, count, work_);
+        if constexpr (kHasGroups) {
+          open = mark_groups<L>(*node, memory_.group_beams, memory_.reaches, memory_.arena + list, count, work_);
+        } else {
+          open = mark_beams<L>(*node, memory_.beams.of, memory_.arena + list, count, work_);
+        }
         work_.charge_to(Work::kListNode);
         level.end = step_up(list + count);
         are_rays = !kHasGroups && has_leaf(*node, open);
@@ -520,10 +525,12 @@ class RayLists {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t beam = beam_index(list[i]);
       const std::uint32_t met =
-          triangles_in_beam<L>(memory_.beams.of[beam], beam_axis(list[i]), memory_.corners, triangle_count);
+          triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], beam_axis(list[i]), memory_.corners,
+                                triangle_count);
       for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount) {
         const std::uint32_t here = met >> base & L::kAllBits;
-        L::compress(L::Int::load(kLaneNumbers + base) + L::Int::splat(beam * kTreeWidth), here, pairs + pair_count);
+        L::compress(L::Int::load(kLaneNumbers + base) + L::Int::splat((beam * 4 + beam_axis(list[i])) * kTreeWidth), here,
+                    pairs + pair_count);
         pair_count += count_bits(here);
       }
     }
@@ -531,7 +538,7 @@ class RayLists {
     std::uint32_t open_count = 0;
     for (std::uint32_t i = 0; i < pair_count; ++i) {
       const std::uint32_t pair = pairs[i], triangle = pair % kTreeWidth;
-      const RayGroup& group = memory_.groups[pair / kTreeWidth];
+      const RayGroup& group = memory_.groups[pair / (4 * kTreeWidth)];
       const OneTriangle lanes = one_triangle<OneTriangle>(triangle);
       std::uint32_t open = 0;
       for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
@@ -541,20 +548,18 @@ class RayLists {
       open_count += open != 0 ? std::uint32_t{1} : std::uint32_t{0};
     }
     for (std::uint32_t i = 0; i < open_count; ++i) {
-      const std::uint32_t beam = pairs[i] / kTreeWidth, triangle = pairs[i] % kTreeWidth;
+      const std::uint32_t beam = pairs[i] / (4 * kTreeWidth), axis = pairs[i] / kTreeWidth % 4,
+                          triangle = pairs[i] % kTreeWidth;
       const OneTriangle lanes = one_triangle<OneTriangle>(triangle);
       RayGroup& group = memory_.groups[beam];
-      float most_t = -1.0f;
       for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
         const std::uint32_t own = L::equal(memory_.beams.own_ids[triangle], group.ids + base).bits();
         const LeafAnswer<L> answer = lanes.test(LeafRay<L>(group, base), L::kAllBits & ~own);
         if ((answer.inside | answer.unsure) != 0) {
           GRIDIRON_TRY(decide_group(beam * kBeamRays, base, answer, records[triangle]));
         }
-        const float most = L::horizontal_max(Float::load(group.t + base));
-        most_t = most > most_t ? most : most_t;
       }
-      shorten_beam(memory_.beams.of[beam], most_t);
+      memory_.reaches[beam] = group_reach<L>(group, memory_.group_beams[beam], axis);
     }
     return Status::kOk;
   }
