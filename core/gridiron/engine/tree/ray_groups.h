@@ -28,6 +28,8 @@ namespace gridiron {
 inline constexpr float kGroupMargin = 0x1p-19f, kLeastGroupMargin = 0x1p-40f;
 /// Groups whose slopes differ by more would meet too much, or whose rays begin farther apart, in the length of the
 /// group, or the scene's size.
+/// Neighbours that make no group, beyond three quarters of all, before the others are not tried any more.
+inline constexpr std::uint32_t kVainGroups = 4;
 inline constexpr float kGroupSpread = 0.25f, kGroupWidth = 0.1f;
 
 /// How far along its axis a group looks from its corner. @returns below 0: its rays have all been answered.

@@ -196,7 +196,7 @@ class RayLists {
     const bool tries = question_.are_neighbors && !question_.trusts_floats;
     listed_ = 0;
     for (std::uint32_t first = 0; first < count; first += kBeamRays) {
-      if (tries && tried - made < kVainBeams + tried / 4) {
+      if (tries && tried - made < kVainGroups + tried / 4 * 3) {
         std::uint32_t octant = 0;
         const std::uint32_t beam = first / kBeamRays;
         const std::uint32_t axis =
