@@ -38,7 +38,7 @@ template <class L>
   using Float = typename L::Float;
   Float reach(-1.0f);
   for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
-    const Float start = (Float::load(group.origin[axis] + base) - Float(beam.corner[axis])) * Float(beam.turn);
+    const Float start = (Float::load(group.origin[axis] + base) - Float(beam.corner[2])) * Float(beam.turn);
     const Float t = Float::load(group.t + base);
     const Float end = L::bounded_sum(t, L::abs(Float::load(group.dir[axis] + base)), start);
     reach = L::max(L::select(t < Float(0.0f), Float(-1.0f), end), reach);
@@ -95,12 +95,12 @@ template <class L>
   }
   if (forward != L::kAllBits) return kNoBeam;
   const float nearest = L::horizontal_min(least_along);
-  beam.corner[axis] = nearest * beam.turn;
+  beam.corner[2] = nearest * beam.turn;
   reach = group_reach<L>(group, beam, axis);
   const float length = reach < largest ? reach : largest;
   for (std::uint32_t k = 0; k < 2; ++k) {
     const float corner = group.origin[others[k]][0];
-    beam.corner[others[k]] = corner;
+    beam.corner[k] = corner;
     Float low_slope(kFloatMax), high_slope(-kFloatMax), starts[kVectors];
     for (std::uint32_t i = 0; i < kVectors; ++i) {
       const std::uint32_t base = i * L::kCount;
@@ -171,8 +171,8 @@ struct GroupPlanes {
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_boxes(const Boxes& node, std::uint32_t base) const {
     const float* const near_side = is_backwards ? node.high[w] : node.low[w];
     const float* const far_side = is_backwards ? node.low[w] : node.high[w];
-    const Float entry = (Float::load(near_side + base) - corner[w]) * turn,
-                exit = (Float::load(far_side + base) - corner[w]) * turn;
+    const Float entry = (Float::load(near_side + base) - corner[2]) * turn,
+                exit = (Float::load(far_side + base) - corner[2]) * turn;
     const Float first = L::max(entry, Float(0.0f)), last = L::min(exit, reach);
     const auto least = [&](int plane) GRIDIRON_INLINE_LAMBDA {
       return L::max(L::bounded_sum(up[plane], first, L::bounded_sum(down[plane], last, offset[plane])), bound[plane]);
@@ -180,31 +180,31 @@ struct GroupPlanes {
     const auto most = [&](int plane) GRIDIRON_INLINE_LAMBDA {
       return L::min(L::bounded_sum(up[plane], last, L::bounded_sum(down[plane], first, offset[plane])), bound[plane]);
     };
-    return ((first > last) | (Float::load(node.high[u] + base) - corner[u] < least(0)) |
-            (Float::load(node.low[u] + base) - corner[u] > most(1)) |
-            (Float::load(node.high[v] + base) - corner[v] < least(2)) |
-            (Float::load(node.low[v] + base) - corner[v] > most(3)))
-        .bits();
+    // Differences have the sign of what they compare: one comparison decides.
+    const Float beside_u = L::max(least(0) - (Float::load(node.high[u] + base) - corner[0]),
+                                  (Float::load(node.low[u] + base) - corner[0]) - most(1));
+    const Float beside_v = L::max(least(2) - (Float::load(node.high[v] + base) - corner[1]),
+                                  (Float::load(node.low[v] + base) - corner[1]) - most(3));
+    return (L::max(L::max(beside_u, beside_v), first - last) > Float(0.0f)).bits();
   }
 
   /// @returns the triangles of a leaf, from `base` on, that lie outside one of the planes, as bits.
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_by(const GroupCorners& corners, std::uint32_t base) const {
     Float along[3];
-    for (int i = 0; i < 3; ++i) along[i] = (Float::load(corners.of[i][w] + base) - corner[w]) * turn;
-    auto missed = (L::max(L::max(along[0], along[1]), along[2]) < Float(0.0f)) |
-                  (L::min(L::min(along[0], along[1]), along[2]) > reach);
+    for (int i = 0; i < 3; ++i) along[i] = (Float::load(corners.of[i][w] + base) - corner[2]) * turn;
+    Float inside(kFloatMax);
     for (int k = 0; k < 2; ++k) {
       const std::uint32_t other = k == 0 ? u : v;
       const Float low = up[2 * k] + down[2 * k], high = up[2 * k + 1] + down[2 * k + 1];
       Float above(-kFloatMax), below(-kFloatMax);
       for (int i = 0; i < 3; ++i) {
-        const Float place = Float::load(corners.of[i][other] + base) - corner[other];
+        const Float place = Float::load(corners.of[i][other] + base) - corner[k];
         above = L::max(place - L::bounded_sum(low, along[i], offset[2 * k]), above);
         below = L::max(L::bounded_sum(high, along[i], offset[2 * k + 1]) - place, below);
       }
-      missed = missed | (above < Float(0.0f)) | (below < Float(0.0f));
+      inside = L::min(L::min(above, below), inside);
     }
-    return missed.bits();
+    return (inside < Float(0.0f)).bits();
   }
 };
 
