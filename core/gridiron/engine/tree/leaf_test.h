@@ -79,25 +79,15 @@ GRIDIRON_INLINE void load_records(const VertexTriangle* records, std::uint32_t b
   }
 }
 
-/// Spreads `count` records over lanes. @param all_corners  gets their corners too, unless it is null.
+/// Spreads `count` records over lanes. @param group_leaf  is filled too, unless it is null.
 template <class L>
 GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t count, TriangleLanes& lanes,
-                                  GroupCorners* all_corners = nullptr) {
+                                  GroupLeaf* group_leaf = nullptr) {
   using Float = typename L::Float;
   const Float factor(kSideErrorFactor);
   for (std::uint32_t base = 0; base < count; base += L::kCount) {
     Float corners[12];  // nine coordinates
     load_records<L>(records, base, count, corners);
-    if constexpr (L::kCount > 4) {
-      if (all_corners != nullptr) {
-        for (int word = 0; word < 9; ++word) corners[word].store(all_corners->of[word / 3][word % 3] + base);
-        for (int axis = 0; axis < 3; ++axis) {
-          const Float a = corners[axis], b = corners[3 + axis], c = corners[6 + axis];
-          L::min(L::min(a, b), c).store(all_corners->low[axis] + base);
-          L::max(L::max(a, b), c).store(all_corners->high[axis] + base);
-        }
-      }
-    }
     Float e1[3], e2[3], sizes(kLeastListSize), edges(kLeastListSize);
     for (int axis = 0; axis < 3; ++axis) {
       const Float v = corners[axis];
@@ -114,8 +104,20 @@ GRIDIRON_OUTLINE void set_up_leaf(const VertexTriangle* records, std::uint32_t c
       (p - q).store(lanes.normal[axis] + base);
       sizes = sizes + (L::abs(p) + L::abs(q));
     }
-    (edges * factor).store(lanes.edge_error + base);
-    (sizes * factor).store(lanes.normal_error + base);
+    const Float edge_error = edges * factor, normal_error = sizes * factor;
+    edge_error.store(lanes.edge_error + base);
+    normal_error.store(lanes.normal_error + base);
+    if constexpr (L::kCount > 4) {
+      if (group_leaf == nullptr) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        const Float a = corners[axis], b = corners[3 + axis], c = corners[6 + axis];
+        L::min(L::min(a, b), c).store(group_leaf->low[axis] + base);
+        L::max(L::max(a, b), c).store(group_leaf->high[axis] + base);
+      }
+      (edge_error * Float(3.0f)).store(group_leaf->edge_error + base);
+      (normal_error * Float(3.0f)).store(group_leaf->normal_error + base);
+      (normal_error + edge_error * Float(kLeastListSize)).store(group_leaf->least_error + base);
+    }
   }
 }
 
@@ -279,28 +281,6 @@ struct LeafLanes : LeafSums<L, kBounded> {
   [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const BatchRay& ray, std::uint32_t there) const {
     return test(LeafRay<L>(ray), there);
   }
-  /// @param own  lanes of a ray and its own triangle. @returns the lanes that wider bounds do not rule out.
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t candidates(const LeafRay<L>& q, typename L::Mask own) const {
-    const Float x = v[0] - q.origin[0], y = v[1] - q.origin[1], z = v[2] - q.origin[2];
-    const Float r[3] = {difference(y, q.dir[2], z, q.dir[1]), difference(z, q.dir[0], x, q.dir[2]),
-                        difference(x, q.dir[1], y, q.dir[0])};
-    const Float denominator = inner(q.dir, n);
-    const Float first = L::turn_by(denominator, inner(r, e2));
-    const Float second = L::turn_by(denominator, inner(r, back_e1));
-    const Float size = L::abs(denominator);
-    const Float least = L::min(L::min(first, second), size - first - second);
-    const Float place[3] = {x, y, z};
-    // The bounds of test() with three times the largest component in place of the sum.
-    const Float wide_edge = edge_error * Float(3.0f), wide_normal = normal_error * Float(3.0f);
-    const Float most = L::larger_size(L::larger_size(x, y), z);
-    const Float side = sum(sum(most, wide_edge, normal_error + edge_error * Float(kLeastListSize)), q.dir_max, least);
-    const Float ahead = L::turn_by(denominator, inner(place, n));
-    const Float turn = wide_normal * q.dir_max;
-    const Float limit = sum(sum(size, Float(1.0f + 0x1p-20f), turn), q.t, Float(2.0f * kLeastAhead));
-    const auto away = (sum(most, wide_normal, ahead) < Float(-2.0f * kLeastAhead)) |
-                      (sum(most, -wide_normal, ahead) > limit);
-    return L::kAllBits & ~((side < Float(0.0f)) | (away & (size > turn)) | own).bits();
-  }
   [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const LeafRay<L>& q, std::uint32_t there) const {
     const Float x = v[0] - q.origin[0], y = v[1] - q.origin[1], z = v[2] - q.origin[2];
     const Float r[3] = {difference(y, q.dir[2], z, q.dir[1]), difference(z, q.dir[0], x, q.dir[2]),
@@ -361,18 +341,6 @@ struct SharedLanes : LeafSums<L, kBounded> {
   [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const BatchRay& ray, std::uint32_t there) const {
     // Rays from a light end on their own triangles, which would all be candidates.
     return test(LeafRay<L>(ray), there, L::equal(ray.id, own_ids));
-  }
-  /// @param own  lanes of a ray and its own triangle. @returns the lanes that these bounds do not rule out.
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t candidates(const LeafRay<L>& q, typename L::Mask own) const {
-    const Float denominator = inner(q.dir, n);
-    const Float side = L::turn_by(denominator, inner(q.dir, first));
-    const Float other = L::turn_by(denominator, inner(q.dir, second));
-    const Float size = L::abs(denominator);
-    const Float least = L::min(L::min(side, other), size - side - other);
-    const Float turn = normal_error * q.dir_max, place = L::turn_by(denominator, ahead);
-    const auto away = (place + ahead_error < Float(0.0f)) |
-                      (place - ahead_error > (size + turn) * q.t * Float(1.0f + 0x1p-20f));
-    return L::kAllBits & ~((least + error * q.dir_max < Float(0.0f)) | (away & (size > turn)) | own).bits();
   }
   [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test(const LeafRay<L>& q, std::uint32_t there) const {
     return test(q, there, L::mask_from_bits(0));

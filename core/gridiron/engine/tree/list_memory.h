@@ -79,11 +79,14 @@ struct alignas(64) GroupBeam {
   float planes[4][4];  ///< slope or 0 if it is below 0, slope or 0 if it is above, offset; a bound beside the plane
 };
 
-/// Corners of a leaf's triangles, and the boxes around these, in lanes.
-struct GroupCorners {
-  alignas(64) float of[3][3][kMaxTreeLeaf];  ///< [corner][axis]
+/// What groups need of a leaf's triangles besides TriangleLanes: their boxes, and wider bounds of errors.
+struct GroupLeaf {
   alignas(64) float low[3][kMaxTreeLeaf];
   alignas(64) float high[3][kMaxTreeLeaf];
+  alignas(64) float edge_error[kMaxTreeLeaf];
+  alignas(64) float normal_error[kMaxTreeLeaf];
+  alignas(64) float least_error[kMaxTreeLeaf];
+  alignas(64) std::uint32_t own_ids[kMaxTreeLeaf];  ///< no_hit() of the triangles
 };
 
 /// A node on the way down, and the rays that met its box.
@@ -122,7 +125,7 @@ struct TermsMemory<Rays, true> {
   RayGroup groups[Rays / kBeamRays];
   GroupBeam group_beams[Rays / kBeamRays];
   float reaches[Rays / kBeamRays];  ///< of groups: how far they look along their axis, from the corner
-  GroupCorners corners;
+  GroupLeaf group_leaf;
   alignas(64) std::uint32_t pairs[Rays + kBeamRays];  ///< of beams and a leaf's triangles
 };
 

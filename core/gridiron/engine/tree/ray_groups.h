@@ -11,6 +11,7 @@
 #include <gridiron/ray/distance.h>
 #include <gridiron/ray/ray_batch.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace gridiron {
@@ -97,47 +98,49 @@ template <class L>
   const float nearest = L::horizontal_min(least_along);
   beam.corner[2] = nearest * beam.turn;
   reach = group_reach<L>(group, beam, axis);
-  const float length = reach < largest ? reach : largest;
+  const float length = reach < largest ? reach : largest, least_margin = largest * kLeastGroupMargin;
   for (std::uint32_t k = 0; k < 2; ++k) {
     const float corner = group.origin[others[k]][0];
     beam.corner[k] = corner;
-    Float low_slope(kFloatMax), high_slope(-kFloatMax), starts[kVectors];
+    Float low_slope(kFloatMax), high_slope(-kFloatMax), lowest(kFloatMax), highest(-kFloatMax), starts[kVectors];
     for (std::uint32_t i = 0; i < kVectors; ++i) {
       const std::uint32_t base = i * L::kCount;
-      const Float slope =
-          Float::load(group.dir[others[k]] + base) / L::abs(Float::load(group.dir[axis] + base));
+      const Float dir = Float::load(group.dir[others[k]] + base);
+      const Float slope = dir / L::abs(Float::load(group.dir[axis] + base));
       low_slope = L::min(slope, low_slope);
       high_slope = L::max(slope, high_slope);
-      starts[i] = Float::load(group.origin[others[k]] + base) - Float(corner);
+      const Float start = Float::load(group.origin[others[k]] + base) - Float(corner);
+      // Far enough for rays without end.
+      const Float far(0x1p100f), way = L::max(L::min(Float::load(group.t + base) * dir, far), -far), end = start + way;
+      const Float margin = L::abs(start) * Float(kGroupMargin) + Float(least_margin);
+      const Float end_margin = (L::abs(start) + L::abs(way)) * Float(kGroupMargin) + Float(least_margin);
+      lowest = L::min(L::min(start - margin, end - end_margin), lowest);
+      highest = L::max(L::max(start + margin, end + end_margin), highest);
+      starts[i] = start;
     }
-    Float low_start = starts[0], high_start = starts[0];
-    if constexpr (kVectors > 1) low_start = L::min(starts[1], low_start), high_start = L::max(starts[1], high_start);
-    const float lowest_start = L::horizontal_min(low_start), highest_start = L::horizontal_max(high_start);
     float low = L::horizontal_min(low_slope), high = L::horizontal_max(high_slope);
     if (!(high - low <= kGroupSpread)) return kNoBeam;
     low = low - magnitude(low) * kGroupMargin;
     high = high + magnitude(high) * kGroupMargin;
-    Float low_offset(kFloatMax), high_offset(-kFloatMax);
+    Float low_offsets(kFloatMax), high_offsets(-kFloatMax);
     for (std::uint32_t i = 0; i < kVectors; ++i) {
       const Float away = along[i] - Float(nearest), to_low = Float(low) * away, to_high = Float(high) * away;
-      const Float least_margin(largest * kLeastGroupMargin);
       const Float size = L::abs(starts[i]);
-      low_offset = L::min(starts[i] - to_low - ((size + L::abs(to_low)) * Float(kGroupMargin) + least_margin),
-                          low_offset);
-      high_offset = L::max(starts[i] - to_high + ((size + L::abs(to_high)) * Float(kGroupMargin) + least_margin),
-                           high_offset);
+      low_offsets = L::min(starts[i] - to_low - ((size + L::abs(to_low)) * Float(kGroupMargin) + Float(least_margin)),
+                           low_offsets);
+      high_offsets = L::max(
+          starts[i] - to_high + ((size + L::abs(to_high)) * Float(kGroupMargin) + Float(least_margin)), high_offsets);
     }
-    const float lowest = L::horizontal_min(low_offset), highest = L::horizontal_max(high_offset);
-    if (!(highest - lowest <= kGroupWidth * length)) return kNoBeam;
+    const float low_offset = L::horizontal_min(low_offsets), high_offset = L::horizontal_max(high_offsets);
+    if (!(high_offset - low_offset <= kGroupWidth * length)) return kNoBeam;
     const auto set = [](float slope, float offset, float bound, float* plane) {
       plane[0] = slope > 0.0f ? slope : 0.0f;
       plane[1] = slope > 0.0f ? 0.0f : slope;
       plane[2] = offset;
       plane[3] = bound;
     };
-    // Rays that all run up have nothing below their starts.
-    set(low, lowest, low >= 0.0f ? lowest_start : -kFloatMax, beam.planes[2 * k]);
-    set(high, highest, high <= 0.0f ? highest_start : kFloatMax, beam.planes[2 * k + 1]);
+    set(low, low_offset, L::horizontal_min(lowest), beam.planes[2 * k]);
+    set(high, high_offset, L::horizontal_max(highest), beam.planes[2 * k + 1]);
   }
   return axis;
 }
@@ -166,7 +169,7 @@ struct GroupPlanes {
     }
   }
 
-  /// @returns the boxes that the group misses, of those from `base` on, as bits. @tparam Boxes  TreeNode, GroupCorners.
+  /// @returns the boxes that the group misses, of those from `base` on, as bits. @tparam Boxes  TreeNode, GroupLeaf.
   template <class Boxes>
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_boxes(const Boxes& node, std::uint32_t base) const {
     const float* const near_side = is_backwards ? node.high[w] : node.low[w];
@@ -186,25 +189,6 @@ struct GroupPlanes {
     const Float beside_v = L::max(least(2) - (Float::load(node.high[v] + base) - corner[1]),
                                   (Float::load(node.low[v] + base) - corner[1]) - most(3));
     return (L::max(L::max(beside_u, beside_v), first - last) > Float(0.0f)).bits();
-  }
-
-  /// @returns the triangles of a leaf, from `base` on, that lie outside one of the planes, as bits.
-  [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_by(const GroupCorners& corners, std::uint32_t base) const {
-    Float along[3];
-    for (int i = 0; i < 3; ++i) along[i] = (Float::load(corners.of[i][w] + base) - corner[2]) * turn;
-    Float inside(kFloatMax);
-    for (int k = 0; k < 2; ++k) {
-      const std::uint32_t other = k == 0 ? u : v;
-      const Float low = up[2 * k] + down[2 * k], high = up[2 * k + 1] + down[2 * k + 1];
-      Float above(-kFloatMax), below(-kFloatMax);
-      for (int i = 0; i < 3; ++i) {
-        const Float place = Float::load(corners.of[i][other] + base) - corner[k];
-        above = L::max(place - L::bounded_sum(low, along[i], offset[2 * k]), above);
-        below = L::max(L::bounded_sum(high, along[i], offset[2 * k + 1]) - place, below);
-      }
-      inside = L::min(L::min(above, below), inside);
-    }
-    return (inside < Float(0.0f)).bits();
   }
 };
 
@@ -266,14 +250,84 @@ template <class L>
   return open;
 }
 
-/// @returns the triangles of a leaf that a group may meet, as bits.
+/// @returns the triangles of a leaf whose boxes a group may meet, as bits.
 template <class L>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t triangles_in_group(const GroupBeam& beam, float reach, std::uint32_t axis,
-                                                               const GroupCorners& corners, std::uint32_t count) {
+                                                               const GroupLeaf& leaf, std::uint32_t count) {
   const GroupPlanes<L> planes(beam, reach, axis);
   std::uint32_t missed = 0;
-  for (std::uint32_t base = 0; base < count; base += L::kCount) missed |= (planes.missed_by(corners, base) | planes.missed_boxes(corners, base)) << base;
+  for (std::uint32_t base = 0; base < count; base += L::kCount) missed |= planes.missed_boxes(leaf, base) << base;
   return ~missed & ((2u << (count - 1)) - 1);
 }
+
+/// One triangle of a leaf against the rays of groups, by wider bounds than LeafLanes: what these leave open is tested
+/// again. @tparam kShares  the rays have one origin, and set_up_origin() prepared the leaf.
+template <class L, bool kShares>
+class GroupTriangle : LeafSums<L, true> {
+ public:
+  using Float = typename L::Float;
+  using LeafSums<L, true>::sum, LeafSums<L, true>::difference, LeafSums<L, true>::inner;
+
+  GRIDIRON_INLINE GroupTriangle(const TriangleLanes& lanes, const GroupLeaf& leaf, std::uint32_t triangle)
+      : words_(lanes.v[0] + triangle), more_words_(leaf.low[0] + triangle), own_id_(leaf.own_ids[triangle]) {}
+
+  /// @returns whether one of the rays from `base` on may hit it.
+  [[nodiscard]] GRIDIRON_INLINE bool may_be_hit(const RayGroup& group, std::uint32_t base) const {
+    const LeafRay<L> q(group, base);
+    const auto is_own = L::equal(own_id_, group.ids + base);
+    const Float normal[3] = {word(kNormal), word(kNormal + 1), word(kNormal + 2)};
+    const Float denominator = inner(q.dir, normal), size = L::abs(denominator);
+    // Three numbers above 0 where the ray passes beside, and where its hit is before it or behind its end.
+    Float beside, before, behind, turn;
+    if constexpr (kShares) {
+      const Float first[3] = {word(kCorner), word(kCorner + 1), word(kCorner + 2)},
+                  second[3] = {word(kBackEdge), word(kBackEdge + 1), word(kBackEdge + 2)};
+      const Float a = L::turn_by(denominator, inner(q.dir, first)), b = L::turn_by(denominator, inner(q.dir, second));
+      const Float least = L::min(L::min(a, b), size - a - b);
+      const Float ahead = L::turn_by(denominator, word(kEdge)), error = word(kEdge + 1);
+      turn = word(kNormalError) * q.dir_max;
+      beside = -(least + word(kEdgeError) * q.dir_max);
+      before = -(ahead + error);
+      behind = (ahead - error) - (size + turn) * q.t * Float(1.0f + 0x1p-20f);
+    } else {
+      const Float place[3] = {word(kCorner) - q.origin[0], word(kCorner + 1) - q.origin[1],
+                              word(kCorner + 2) - q.origin[2]};
+      const Float r[3] = {difference(place[1], q.dir[2], place[2], q.dir[1]),
+                          difference(place[2], q.dir[0], place[0], q.dir[2]),
+                          difference(place[0], q.dir[1], place[1], q.dir[0])};
+      const Float edge[3] = {word(kEdge), word(kEdge + 1), word(kEdge + 2)},
+                  back[3] = {word(kBackEdge), word(kBackEdge + 1), word(kBackEdge + 2)};
+      const Float a = L::turn_by(denominator, inner(r, edge)), b = L::turn_by(denominator, inner(r, back));
+      const Float least = L::min(L::min(a, b), size - a - b);
+      // Three times the largest component in place of the sum.
+      const Float most = L::larger_size(L::larger_size(place[0], place[1]), place[2]);
+      const Float ahead = L::turn_by(denominator, inner(place, normal)), error = more_word(kWideNormal);
+      turn = error * q.dir_max;
+      beside = -sum(sum(most, more_word(kWideEdge), more_word(kLeast)), q.dir_max, least);
+      before = -sum(most, error, ahead + Float(2.0f * kLeastAhead));
+      behind = sum(most, -error, ahead) -
+               sum(sum(size, Float(1.0f + 0x1p-20f), turn), q.t, Float(2.0f * kLeastAhead));
+    }
+    const Float away = L::min(L::max(before, behind), size - turn);
+    return (L::kAllBits & ~((L::max(away, beside) > Float(0.0f)) | is_own).bits()) != 0;
+  }
+
+ private:
+  // Rows of the arrays.
+  static constexpr int kCorner = 0, kBackEdge = 3, kEdge = 6, kNormal = 9, kEdgeError = 12, kNormalError = 13;
+  static constexpr int kWideEdge = 6, kWideNormal = 7, kLeast = 8;
+  static_assert(offsetof(TriangleLanes, normal_error) == kNormalError * kMaxTreeLeaf * sizeof(float));
+  static_assert(offsetof(GroupLeaf, least_error) == kLeast * kMaxTreeLeaf * sizeof(float));
+  // By constant distances: an address for each array would not fit the registers.
+  [[nodiscard]] GRIDIRON_INLINE Float word(int row) const {
+    return Float(words_[static_cast<std::uint32_t>(row) * kMaxTreeLeaf]);
+  }
+  [[nodiscard]] GRIDIRON_INLINE Float more_word(int row) const {
+    return Float(more_words_[static_cast<std::uint32_t>(row) * kMaxTreeLeaf]);
+  }
+
+  const float *words_, *more_words_;
+  std::uint32_t own_id_;
+};
 
 }  // namespace gridiron

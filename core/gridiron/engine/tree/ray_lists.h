@@ -503,58 +503,53 @@ class RayLists {
     return Status::kOk;
   }
 
-  // The triangles of a leaf that beams meet, one after the other, against all rays of each beam.
+  // The triangles of a leaf that groups meet, one after the other, against all rays of each group.
   [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf_by_groups(TreeChild leaf, const std::uint32_t* list,
                                                              std::uint32_t count) {
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(leaf, records));
     work_.add(share_origin() ? Work::kListSharedLeaf : Work::kListLeaf);
-    set_up_leaf<L>(records, leaf.count(), memory_.triangles, &memory_.corners);
-    for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.beams.own_ids[i] = no_hit(records[i].triangle_id);
-    if (!shares_origin_) return test_groups<LeafLanes<L, true, true>>(records, leaf.count(), list, count);
+    set_up_leaf<L>(records, leaf.count(), memory_.triangles, &memory_.group_leaf);
+    for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.group_leaf.own_ids[i] = no_hit(records[i].triangle_id);
+    if (!shares_origin_) return test_groups<false>(records, leaf.count(), list, count);
     set_up_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
-    return test_groups<SharedLanes<L, true, true>>(records, leaf.count(), list, count);
+    return test_groups<true>(records, leaf.count(), list, count);
   }
-  // First the pairs of a beam and a triangle, then those that floats leave open for some rays, then these: each step
-  // without a branch that depends on a pair.
-  template <class OneTriangle>
-  [[nodiscard]] GRIDIRON_INLINE Status test_groups(const VertexTriangle* records, std::uint32_t triangle_count,
-                                                   const std::uint32_t* list, std::uint32_t count) {
+  // First the pairs of a group and a triangle, then those that wide bounds leave open for some rays, then these: each
+  // step without a branch that depends on a pair.
+  template <bool kShares>
+  [[nodiscard]] GRIDIRON_OUTLINE Status test_groups(const VertexTriangle* records, std::uint32_t triangle_count,
+                                                    const std::uint32_t* list, std::uint32_t count) {
     std::uint32_t* const pairs = memory_.pairs;
-    std::uint32_t pair_count = 0;
+    std::uint32_t pair_count = 0, open_count = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t beam = beam_index(list[i]);
-      const std::uint32_t met =
-          triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], beam_axis(list[i]), memory_.corners,
-                                triangle_count);
+      const std::uint32_t beam = beam_index(list[i]), axis = beam_axis(list[i]);
+      const std::uint32_t met = triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], axis,
+                                                      memory_.group_leaf, triangle_count);
+      const typename L::Int first = L::Int::splat((beam * 4 + axis) * kTreeWidth);
       for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount) {
         const std::uint32_t here = met >> base & L::kAllBits;
-        L::compress(L::Int::load(kLaneNumbers + base) + L::Int::splat((beam * 4 + beam_axis(list[i])) * kTreeWidth), here,
-                    pairs + pair_count);
+        L::compress(L::Int::load(kLaneNumbers + base) + first, here, pairs + pair_count);
         pair_count += count_bits(here);
       }
     }
-    work_.add(share_origin() ? Work::kListSharedGroup : Work::kListTriangleGroup, pair_count);
-    std::uint32_t open_count = 0;
+    work_.add(kShares ? Work::kListSharedGroup : Work::kListTriangleGroup, pair_count);
     for (std::uint32_t i = 0; i < pair_count; ++i) {
-      const std::uint32_t pair = pairs[i], triangle = pair % kTreeWidth;
+      const std::uint32_t pair = pairs[i];
       const RayGroup& group = memory_.groups[pair / (4 * kTreeWidth)];
-      const OneTriangle lanes = one_triangle<OneTriangle>(triangle);
-      std::uint32_t open = 0;
-      for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
-        open |= lanes.candidates(LeafRay<L>(group, base), L::equal(memory_.beams.own_ids[triangle], group.ids + base));
-      }
+      const GroupTriangle<L, kShares> triangle(memory_.triangles, memory_.group_leaf, pair % kTreeWidth);
+      bool is_open = triangle.may_be_hit(group, 0);
+      if constexpr (L::kCount < kBeamRays) is_open |= triangle.may_be_hit(group, L::kCount);
       pairs[open_count] = pair;
-      open_count += open != 0 ? std::uint32_t{1} : std::uint32_t{0};
+      open_count += is_open ? std::uint32_t{1} : std::uint32_t{0};
     }
     for (std::uint32_t i = 0; i < open_count; ++i) {
       const std::uint32_t beam = pairs[i] / (4 * kTreeWidth), axis = pairs[i] / kTreeWidth % 4,
                           triangle = pairs[i] % kTreeWidth;
-      const OneTriangle lanes = one_triangle<OneTriangle>(triangle);
       RayGroup& group = memory_.groups[beam];
       for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
-        const std::uint32_t own = L::equal(memory_.beams.own_ids[triangle], group.ids + base).bits();
-        const LeafAnswer<L> answer = lanes.test(LeafRay<L>(group, base), L::kAllBits & ~own);
+        const auto own = L::equal(memory_.group_leaf.own_ids[triangle], group.ids + base);
+        const LeafAnswer<L> answer = test_one<kShares>(triangle, LeafRay<L>(group, base), L::kAllBits & ~own.bits());
         if ((answer.inside | answer.unsure) != 0) {
           GRIDIRON_TRY(decide_group(beam * kBeamRays, base, answer, records[triangle]));
         }
@@ -565,12 +560,13 @@ class RayLists {
   }
   alignas(64) static constexpr std::uint32_t kLaneNumbers[kTreeWidth] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                                          8, 9, 10, 11, 12, 13, 14, 15};
-  template <class OneTriangle>
-  [[nodiscard]] GRIDIRON_INLINE OneTriangle one_triangle(std::uint32_t triangle) const {
-    if constexpr (requires { OneTriangle(memory_.triangles, triangle, memory_.beams.own_ids); }) {
-      return OneTriangle(memory_.triangles, triangle, memory_.beams.own_ids);
+  template <bool kShares>
+  [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test_one(std::uint32_t triangle, const LeafRay<L>& rays,
+                                                       std::uint32_t there) const {
+    if constexpr (kShares) {
+      return SharedLanes<L, true, true>(memory_.triangles, triangle, memory_.group_leaf.own_ids).test(rays, there);
     } else {
-      return OneTriangle(memory_.triangles, triangle);
+      return LeafLanes<L, true, true>(memory_.triangles, triangle).test(rays, there);
     }
   }
   // Decides one triangle for the rays of a group, from `base` on, that floats do not rule out.
