@@ -23,6 +23,7 @@ struct ListTree {
 /// A ray as it lies in memory: what defines it, nothing derived.
 struct alignas(32) MemoryRay {
   float origin[3], t, dir[3];
+  std::uint32_t id;  ///< kNoTriangle: as BatchRay has it before anything was hit
 };
 
 /// Answers of 16 rays. Of any hit `hits` alone is written.

@@ -3,6 +3,7 @@
 #include <gridiron/base/one_lane.h>
 #include <gridiron/engine/tree/ray_lists.h>
 
+#include <cstddef>
 #include <cstring>
 #include <cstdio>
 #include <cstdlib>
@@ -43,10 +44,10 @@ struct Source {
 };
 
 void load_ray(const MemoryRay& from, BatchRay& to) {
-  // Origin and t follow each other in both: one quad of words.
-  std::memcpy(to.origin, from.origin, sizeof(to.origin) + sizeof(to.t));
-  std::memcpy(to.dir, from.dir, sizeof(to.dir));
-  to.id = kNoTriangle;
+  // Two quads of words in both.
+  static_assert(offsetof(MemoryRay, dir) == 16 && offsetof(BatchRay, id) == offsetof(BatchRay, dir) + 12);
+  std::memcpy(to.origin, from.origin, 16);
+  std::memcpy(to.dir, from.dir, 16);
 }
 
 void store_answers(const BatchRay* rays, bool any_hit, AnswerGroup& to) {
