@@ -68,6 +68,7 @@ struct alignas(64) RayGroup {
   float origin[3][kBeamRays];
   float t[kBeamRays];  ///< as in BatchRay
   float dir[3][kBeamRays];
+  float inverse[3][kBeamRays];
   float dir_max[kBeamRays];
   std::uint32_t ids[kBeamRays];  ///< as in BatchRay, before anything was hit
 };

@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kPlaceShift = 16, kOctantShift = 29;
 inline constexpr std::uint32_t kMaskBits = (1u << kPlaceShift) - 1;
 inline constexpr std::uint32_t kRayQuads = sizeof(BatchRay) / 16;
 
-[[nodiscard]] GRIDIRON_INLINE std::uint32_t list_word(std::uint32_t ray, std::uint32_t octant) {
+[[nodiscard]] constexpr GRIDIRON_INLINE std::uint32_t list_word(std::uint32_t ray, std::uint32_t octant) {
   return octant << kOctantShift | (kRayQuads * ray) << kPlaceShift;
 }
 /// Behind all words of rays.

@@ -4,6 +4,10 @@
 #pragma once
 
 #include <gridiron/base/lanes.h>
+#include <gridiron/base/math.h>
+#include <gridiron/base/tree_records.h>
+#include <gridiron/base/work_counters.h>
+#include <gridiron/engine/tree/box_test.h>
 #include <gridiron/engine/tree/leaf_test.h>
 #include <gridiron/engine/tree/list_memory.h>
 #include <gridiron/engine/tree/list_rays.h>
@@ -65,12 +69,15 @@ template <class L>
     load_ray_words<L>(rays[base].origin, place);
     load_ray_words<L>(rays[base].dir, dir);
     Float farthest_place = L::abs(place[0]);
+    const Float longest = L::max(L::max(L::abs(dir[0]), L::abs(dir[1])), L::abs(dir[2]));
+    const Float least = longest * Float(kLeastListComponent);
     for (int axis = 0; axis < 3; ++axis) {
       place[axis].store(group.origin[axis] + base);
       dir[axis].store(group.dir[axis] + base);
+      const Float away = L::select(L::abs(dir[axis]) < least, L::turn_by(dir[axis], least), dir[axis]);
+      (Float(1.0f) / away).store(group.inverse[axis] + base);
       if (axis != 0) usual &= (L::abs(place[axis]) <= most_place).bits();
     }
-    const Float longest = L::max(L::max(L::abs(dir[0]), L::abs(dir[1])), L::abs(dir[2]));
     usual &= ((farthest_place <= most_place) & (place[3] > Float(0.0f)) & (longest >= Float(kLeastListDirection)) &
               (longest <= Float(kGreatestListDirection)))
                  .bits();
@@ -258,6 +265,46 @@ template <class L>
   std::uint32_t missed = 0;
   for (std::uint32_t base = 0; base < count; base += L::kCount) missed |= planes.missed_boxes(leaf, base) << base;
   return ~missed & ((2u << (count - 1)) - 1);
+}
+
+/// A box around a leaf's triangles, grown as those of nodes are.
+struct GroupBox {
+  float low[3], high[3];
+
+  /// @param count  of triangles. @param largest  as in RayLists::trace().
+  template <class L>
+  GRIDIRON_INLINE void set_up(const GroupLeaf& leaf, std::uint32_t count, float largest) {
+    using Float = typename L::Float;
+    // Behind the last triangle of a group of lanes it stands again.
+    const bool has_more = L::kCount < kMaxTreeLeaf && count > L::kCount;
+    for (int axis = 0; axis < 3; ++axis) {
+      float least = L::horizontal_min(Float::load(leaf.low[axis]));
+      float most = L::horizontal_max(Float::load(leaf.high[axis]));
+      if (has_more) {
+        const float other_least = L::horizontal_min(Float::load(leaf.low[axis] + L::kCount % kMaxTreeLeaf));
+        const float other_most = L::horizontal_max(Float::load(leaf.high[axis] + L::kCount % kMaxTreeLeaf));
+        least = other_least < least ? other_least : least;
+        most = other_most > most ? other_most : most;
+      }
+      low[axis] = least - (magnitude(least) * 0x1p-21f + largest * 0x1p-24f);
+      high[axis] = most + (magnitude(most) * 0x1p-21f + largest * 0x1p-24f);
+    }
+  }
+};
+
+/// @returns the rays of a group, from `base` on, that may meet a box, as bits: box_test.h.
+template <class L>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t rays_in_box(const RayGroup& group, std::uint32_t base,
+                                                        const GroupBox& box) {
+  using Float = typename L::Float;
+  Float first(0.0f), last = Float::load(group.t + base);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Float origin = Float::load(group.origin[axis] + base), inverse = Float::load(group.inverse[axis] + base);
+    const Float one = (Float(box.low[axis]) - origin) * inverse, other = (Float(box.high[axis]) - origin) * inverse;
+    first = L::max(L::min(one, other), first);
+    last = L::min(L::max(one, other), last);
+  }
+  return (first <= last * Float(kExitFactor)).bits();
 }
 
 /// One triangle of a leaf against the rays of groups, by wider bounds than LeafLanes: what these leave open is tested

@@ -39,6 +39,7 @@ class RayLists {
   /// @param largest  |coordinate| of the tree's triangles.
   [[nodiscard]] GRIDIRON_OUTLINE Status trace(const RayQuestion& question, std::uint32_t count, float largest) {
     question_ = question;
+    largest_ = largest;
     if constexpr (kHasBeams) {
       if (!(largest >= kLeastBeamScene)) question_.are_neighbors = false;
     }
@@ -293,7 +294,8 @@ class RayLists {
       if (child.is_leaf()) {
         if constexpr (kHasGroups) {
           if (has_beams(depth)) {
-            GRIDIRON_TRY(visit_leaf_by_groups(child, memory_.arena + level.end, selected));
+            std::uint32_t* const beams = memory_.arena + level.end;
+            GRIDIRON_TRY(visit_leaf_by_groups(child, beams, selected, beams + step_up(selected)));
             continue;
           }
         }
@@ -478,7 +480,6 @@ class RayLists {
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(leaf, records));
     const Work leaf_kind = share_origin() ? Work::kListSharedLeaf : Work::kListLeaf;
-    const Work group_kind = share_origin() ? Work::kListSharedGroup : Work::kListTriangleGroup;
     work_.add(leaf_kind);
     work_.charge_to(leaf_kind);
     set_up_leaf<L>(records, leaf.count(), memory_.triangles);
@@ -488,8 +489,15 @@ class RayLists {
         for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.beams.own_ids[i] = no_hit(records[i].triangle_id);
       }
     }
-    for (std::uint32_t base = 0; base < leaf.count(); base += L::kCount) {
-      const std::uint32_t rest = leaf.count() - base;
+    return test_rays(records, leaf.count(), list, count);
+  }
+  // The triangles in lanes against the rays of a list.
+  [[nodiscard]] GRIDIRON_INLINE Status test_rays(const VertexTriangle* records, std::uint32_t triangle_count,
+                                                 const std::uint32_t* list, std::uint32_t count) {
+    const Work leaf_kind = share_origin() ? Work::kListSharedLeaf : Work::kListLeaf;
+    const Work group_kind = share_origin() ? Work::kListSharedGroup : Work::kListTriangleGroup;
+    for (std::uint32_t base = 0; base < triangle_count; base += L::kCount) {
+      const std::uint32_t rest = triangle_count - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
       work_.add(group_kind, count);
       work_.charge_to(leaf_kind);
@@ -503,36 +511,66 @@ class RayLists {
     return Status::kOk;
   }
 
-  // The triangles of a leaf that groups meet, one after the other, against all rays of each group.
+  // A leaf's triangles against the rays of groups: one triangle in all lanes, or one ray, whichever are fewer.
   [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf_by_groups(TreeChild leaf, const std::uint32_t* list,
-                                                             std::uint32_t count) {
+                                                             std::uint32_t count, std::uint32_t* rays) {
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(leaf, records));
     work_.add(share_origin() ? Work::kListSharedLeaf : Work::kListLeaf);
     set_up_leaf<L>(records, leaf.count(), memory_.triangles, &memory_.group_leaf);
     for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.group_leaf.own_ids[i] = no_hit(records[i].triangle_id);
-    if (!shares_origin_) return test_groups<false>(records, leaf.count(), list, count);
-    set_up_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
-    return test_groups<true>(records, leaf.count(), list, count);
-  }
-  // First the pairs of a group and a triangle, then those that wide bounds leave open for some rays, then these: each
-  // step without a branch that depends on a pair.
-  template <bool kShares>
-  [[nodiscard]] GRIDIRON_OUTLINE Status test_groups(const VertexTriangle* records, std::uint32_t triangle_count,
-                                                    const std::uint32_t* list, std::uint32_t count) {
-    std::uint32_t* const pairs = memory_.pairs;
-    std::uint32_t pair_count = 0, open_count = 0;
+    GroupBox box;
+    box.template set_up<L>(memory_.group_leaf, leaf.count(), largest_);
+    std::uint32_t pair_count = 0, ray_count = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t beam = beam_index(list[i]), axis = beam_axis(list[i]);
-      const std::uint32_t met = triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], axis,
-                                                      memory_.group_leaf, triangle_count);
-      const typename L::Int first = L::Int::splat((beam * 4 + axis) * kTreeWidth);
+      const RayGroup& group = memory_.groups[beam];
+      std::uint32_t triangles = triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], axis,
+                                                      memory_.group_leaf, leaf.count());
+      std::uint32_t lanes = rays_in_box<L>(group, 0, box);
+      if constexpr (L::kCount < kBeamRays) lanes |= rays_in_box<L>(group, L::kCount, box) << L::kCount;
+      if (triangles == 0) lanes = 0;
+      if (kTriangleCost * count_bits(triangles) <= count_bits(lanes)) {
+        lanes = 0;
+      } else {
+        triangles = 0;
+      }
+      const typename L::Int first_pair = L::Int::splat((beam * 4 + axis) * kTreeWidth);
+      const typename L::Int first_ray = L::Int::splat(list_word(beam * kBeamRays, 0));
       for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount) {
-        const std::uint32_t here = met >> base & L::kAllBits;
-        L::compress(L::Int::load(kLaneNumbers + base) + first, here, pairs + pair_count);
-        pair_count += count_bits(here);
+        const std::uint32_t some = triangles >> base & L::kAllBits, others = lanes >> base & L::kAllBits;
+        L::compress(L::Int::load(kLaneNumbers.of + base) + first_pair, some, memory_.pairs + pair_count);
+        pair_count += count_bits(some);
+        L::compress(L::Int::load(kLaneNumbers.rays + base) + first_ray, others, rays + ray_count);
+        ray_count += count_bits(others);
       }
     }
+    const std::uint32_t hits = hit_count_;
+    if (shares_origin_) {
+      set_up_origin<L>(memory_.rays[0].origin, leaf.count(), memory_.triangles);
+      for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.beams.own_ids[i] = memory_.group_leaf.own_ids[i];
+    }
+    if (pair_count != 0) {
+      GRIDIRON_TRY(shares_origin_ ? test_pairs<true>(records, pair_count) : test_pairs<false>(records, pair_count));
+    }
+    for (std::uint32_t i = 0; i < ray_count; ++i) {
+      const std::uint32_t ray = (rays[i] & kPlaceBits) >> kPlaceShift;
+      ray_of(memory_.rays, rays[i]).dir_max = memory_.groups[ray / (kRayQuads * kBeamRays)].dir_max[ray / kRayQuads % kBeamRays];
+    }
+    GRIDIRON_TRY(test_rays(records, leaf.count(), rays, ray_count));
+    if (hit_count_ == hits) return Status::kOk;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t beam = beam_index(list[i]);
+      memory_.reaches[beam] = group_reach<L>(memory_.groups[beam], memory_.group_beams[beam], beam_axis(list[i]));
+    }
+    return Status::kOk;
+  }
+  // First the pairs of a group and a triangle that wide bounds leave open for some rays, then these: each step without
+  // a branch that depends on a pair.
+  template <bool kShares>
+  [[nodiscard]] GRIDIRON_OUTLINE Status test_pairs(const VertexTriangle* records, std::uint32_t pair_count) {
+    std::uint32_t* const pairs = memory_.pairs;
+    std::uint32_t open_count = 0;
     work_.add(kShares ? Work::kListSharedGroup : Work::kListTriangleGroup, pair_count);
     for (std::uint32_t i = 0; i < pair_count; ++i) {
       const std::uint32_t pair = pairs[i];
@@ -544,9 +582,8 @@ class RayLists {
       open_count += is_open ? std::uint32_t{1} : std::uint32_t{0};
     }
     for (std::uint32_t i = 0; i < open_count; ++i) {
-      const std::uint32_t beam = pairs[i] / (4 * kTreeWidth), axis = pairs[i] / kTreeWidth % 4,
-                          triangle = pairs[i] % kTreeWidth;
-      RayGroup& group = memory_.groups[beam];
+      const std::uint32_t beam = pairs[i] / (4 * kTreeWidth), triangle = pairs[i] % kTreeWidth;
+      const RayGroup& group = memory_.groups[beam];
       for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
         const auto own = L::equal(memory_.group_leaf.own_ids[triangle], group.ids + base);
         const LeafAnswer<L> answer = test_one<kShares>(triangle, LeafRay<L>(group, base), L::kAllBits & ~own.bits());
@@ -554,12 +591,20 @@ class RayLists {
           GRIDIRON_TRY(decide_group(beam * kBeamRays, base, answer, records[triangle]));
         }
       }
-      memory_.reaches[beam] = group_reach<L>(group, memory_.group_beams[beam], axis);
     }
     return Status::kOk;
   }
-  alignas(64) static constexpr std::uint32_t kLaneNumbers[kTreeWidth] = {0, 1, 2,  3,  4,  5,  6,  7,
-                                                                         8, 9, 10, 11, 12, 13, 14, 15};
+  // What a triangle takes in lanes of rays, in what a ray takes in lanes of triangles.
+  static constexpr std::uint32_t kTriangleCost = 2;
+  struct LaneNumbers {
+    alignas(64) std::uint32_t of[kTreeWidth];
+    alignas(64) std::uint32_t rays[kTreeWidth];  // words of lists
+  };
+  static constexpr LaneNumbers kLaneNumbers = [] {
+    LaneNumbers numbers{};
+    for (std::uint32_t i = 0; i < kTreeWidth; ++i) numbers.of[i] = i, numbers.rays[i] = list_word(i, 0);
+    return numbers;
+  }();
   template <bool kShares>
   [[nodiscard]] GRIDIRON_INLINE LeafAnswer<L> test_one(std::uint32_t triangle, const LeafRay<L>& rays,
                                                        std::uint32_t there) const {
@@ -733,6 +778,7 @@ class RayLists {
   }
   GRIDIRON_INLINE void set_t(BatchRay& ray, float t) {
     ray.t = t;
+    if constexpr (kHasGroups) ++hit_count_;
     if constexpr (kHasTerms) memory_.terms[&ray - memory_.rays].t = t;
     if constexpr (kHasGroups) {
       const auto place = static_cast<std::uint32_t>(&ray - memory_.rays);
@@ -781,6 +827,8 @@ class RayLists {
   std::uint32_t ray_count_ = 0, dead_count_ = 0;
   std::uint32_t beam_levels_ = 0;  // bit i: the lists of level i are of beams
   std::uint32_t listed_ = 0;       // words of the batch's rays and beams
+  std::uint32_t hit_count_ = 0;    // hits that changed a ray
+  float largest_ = 0.0f;
   bool shares_origin_ = false;
   // What wide lanes alone keep.
   struct Wide {
