@@ -113,7 +113,7 @@ template <class L>
     for (std::uint32_t i = 0; i < kVectors; ++i) {
       const std::uint32_t base = i * L::kCount;
       const Float dir = Float::load(group.dir[others[k]] + base);
-      const Float slope = dir / L::abs(Float::load(group.dir[axis] + base));
+      const Float slope = dir * L::abs(Float::load(group.inverse[axis] + base));
       low_slope = L::min(slope, low_slope);
       high_slope = L::max(slope, high_slope);
       const Float start = Float::load(group.origin[others[k]] + base) - Float(corner);
@@ -286,8 +286,9 @@ struct GroupBox {
         least = other_least < least ? other_least : least;
         most = other_most > most ? other_most : most;
       }
-      low[axis] = least - (magnitude(least) * 0x1p-21f + largest * 0x1p-24f);
-      high[axis] = most + (magnitude(most) * 0x1p-21f + largest * 0x1p-24f);
+      const float margin = tree_margin(largest);
+      low[axis] = least - (magnitude(least) * kTreeGrowth + margin);
+      high[axis] = most + (magnitude(most) * kTreeGrowth + margin);
     }
   }
 };

@@ -525,15 +525,17 @@ class RayLists {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t beam = beam_index(list[i]), axis = beam_axis(list[i]);
       const RayGroup& group = memory_.groups[beam];
-      std::uint32_t triangles = triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], axis,
-                                                      memory_.group_leaf, leaf.count());
-      std::uint32_t lanes = rays_in_box<L>(group, 0, box);
+      std::uint32_t lanes = rays_in_box<L>(group, 0, box), triangles = 0;
       if constexpr (L::kCount < kBeamRays) lanes |= rays_in_box<L>(group, L::kCount, box) << L::kCount;
-      if (triangles == 0) lanes = 0;
-      if (kTriangleCost * count_bits(triangles) <= count_bits(lanes)) {
-        lanes = 0;
-      } else {
-        triangles = 0;
+      if (lanes == 0) continue;
+      if (count_bits(lanes) > kTriangleCost) {
+        triangles = triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], axis, memory_.group_leaf,
+                                          leaf.count());
+        if (kTriangleCost * count_bits(triangles) <= count_bits(lanes)) {
+          lanes = 0;
+        } else {
+          triangles = 0;
+        }
       }
       const typename L::Int first_pair = L::Int::splat((beam * 4 + axis) * kTreeWidth);
       const typename L::Int first_ray = L::Int::splat(list_word(beam * kBeamRays, 0));
