@@ -73,10 +73,14 @@ struct alignas(64) RayGroup {
   std::uint32_t ids[kBeamRays];  ///< as in BatchRay, before anything was hit
 };
 
-/// What bounds a group, seen from a corner of it: ray_groups.h.
+/// Beams of a group, at most.
+inline constexpr std::uint32_t kGroupBeams = 2;
+
+/// What bounds rays of a group, seen from a corner: ray_groups.h.
 struct alignas(64) GroupBeam {
-  float corner[3];
+  float corner[3];     ///< u, v, w
   float turn;          ///< 1; -1: they run backwards along their axis
+  std::uint32_t lanes;  ///< the rays of the group that it bounds, as bits
   float planes[4][4];  ///< slope or 0 if it is below 0, slope or 0 if it is above, offset; a bound beside the plane
 };
 
@@ -124,10 +128,10 @@ template <std::uint32_t Rays>
 struct TermsMemory<Rays, true> {
   RayTerms terms[Rays];
   RayGroup groups[Rays / kBeamRays];
-  GroupBeam group_beams[Rays / kBeamRays];
-  float reaches[Rays / kBeamRays];  ///< of groups: how far they look along their axis, from the corner
+  GroupBeam group_beams[kGroupBeams * (Rays / kBeamRays)];
+  float reaches[kGroupBeams * (Rays / kBeamRays)];  ///< of beams: how far they look along their axis, from the corner
   GroupLeaf group_leaf;
-  alignas(64) std::uint32_t pairs[Rays + kBeamRays];  ///< of beams and a leaf's triangles
+  alignas(64) std::uint32_t pairs[kGroupBeams * Rays + kBeamRays];  ///< of beams and a leaf's triangles
 };
 
 /// @tparam Rays      of a batch: a multiple of 16.
@@ -145,7 +149,8 @@ struct alignas(64) ListMemory : TermsMemory<Rays, HasTerms> {
   template <class L>
   static constexpr bool kHoldsBeams = [] {
     constexpr std::uint32_t step = kListStep<L>, parts = 1 + kListParts<L>,
-                            beams = (Rays / kBeamRays + (step - 1)) / step * step,
+                            most = (HasTerms ? kGroupBeams : std::uint32_t{1}) * (Rays / kBeamRays),
+                            beams = (most + (step - 1)) / step * step,
                             level = beams > parts * step ? beams : parts * step;
     return kArenaWords >= (kMaxTreeDepth + 1) * level + parts * (Rays + beams) + parts * step;
   }();

@@ -31,13 +31,84 @@ namespace gridiron {
 // |s| w + |o| at most. So kGroupMargin of each slope, and of |U| + |s| W, is enough. What is lost below the least normal
 // float is less than kLeastGroupMargin of the scene.
 inline constexpr float kGroupMargin = 0x1p-19f, kLeastGroupMargin = 0x1p-40f;
-/// Groups whose slopes differ by more would meet too much, or whose rays begin farther apart, in the length of the
-/// group, or the scene's size.
-/// Neighbours that make no group, beyond three quarters of all, before the others are not tried any more.
-inline constexpr std::uint32_t kVainGroups = 4;
+/// Beams whose slopes differ by more would meet too much, or whose rays begin farther apart, in the length of the beam,
+/// or the scene's size.
 inline constexpr float kGroupSpread = 0.25f, kGroupWidth = 0.1f;
+/// Rays that a beam is worth its work for.
+inline constexpr std::uint32_t kLeastGroup = 8;
+/// Once so many rays of a batch, and this part of those tried, are in no beam, the others are not tried any more: nodes
+/// would be visited twice, by beams and by rays.
+inline constexpr std::uint32_t kLoneRays = 48, kLoneShare = 3;
 
-/// How far along its axis a group looks from its corner. @returns below 0: its rays have all been answered.
+/// Puts kBeamRays rays in lanes.
+/// @param largest  as in RayLists::trace(). @returns the rays that floats can test, as bits.
+template <class L>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t load_group(const BatchRay* rays, float largest, RayGroup& group) {
+  using Float = typename L::Float;
+  const float farthest = largest * kFarBeam;
+  const Float most_place(farthest < kGreatestListPlace ? farthest : kGreatestListPlace);
+  std::uint32_t usual = 0;
+  for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
+    Float place[4], dir[4];
+    load_ray_words<L>(rays[base].origin, place);
+    load_ray_words<L>(rays[base].dir, dir);
+    const Float longest = L::max(L::max(L::abs(dir[0]), L::abs(dir[1])), L::abs(dir[2]));
+    const Float least = longest * Float(kLeastListComponent);
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis].store(group.origin[axis] + base);
+      dir[axis].store(group.dir[axis] + base);
+      const Float away = L::select(L::abs(dir[axis]) < least, L::turn_by(dir[axis], least), dir[axis]);
+      (Float(1.0f) / away).store(group.inverse[axis] + base);
+    }
+    usual |= ((L::abs(place[0]) <= most_place) & (L::abs(place[1]) <= most_place) & (L::abs(place[2]) <= most_place) &
+              (place[3] > Float(0.0f)) & (longest >= Float(kLeastListDirection)) &
+              (longest <= Float(kGreatestListDirection)))
+                 .bits()
+             << base;
+    place[3].store(group.t + base);
+    longest.store(group.dir_max + base);
+    L::words_of(dir[3]).store(group.ids + base);
+  }
+  return largest <= kGreatestListPlace ? usual : std::uint32_t{0};
+}
+
+/// The axes of a beam.
+struct BeamAxes {
+  std::uint32_t u, v, w;
+
+  explicit constexpr BeamAxes(std::uint32_t along) : u(along == 0 ? 1 : 0), v(along == 2 ? 1 : 2), w(along) {}
+  /// The axis along which a ray of a group runs the farthest.
+  [[nodiscard]] static GRIDIRON_INLINE BeamAxes of_ray(const RayGroup& group, std::uint32_t ray) {
+    const float x = magnitude(group.dir[0][ray]), y = magnitude(group.dir[1][ray]), z = magnitude(group.dir[2][ray]);
+    return BeamAxes(x > y ? (x > z ? 0u : 2u) : (y > z ? 1u : 2u));
+  }
+};
+
+/// @returns those of some rays of a group that run near one of them, and as it does, as bits.
+template <class L>
+[[nodiscard]] GRIDIRON_INLINE std::uint32_t lanes_beside(const RayGroup& group, std::uint32_t lanes, std::uint32_t ray,
+                                                         float largest) {
+  using Float = typename L::Float;
+  const BeamAxes axes = BeamAxes::of_ray(group, ray);
+  const float along = magnitude(group.dir[axes.w][ray]), reach = group.t[ray] * along;
+  const Float width(0.5f * kGroupWidth * (reach < largest ? reach : largest)), spread(0.5f * kGroupSpread);
+  std::uint32_t beside = 0;
+  for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
+    const Float inverse = Float::load(group.inverse[axes.w] + base);
+    const Float away = Float::load(group.origin[axes.w] + base) - Float(group.origin[axes.w][ray]);
+    auto is_beside = inverse * Float(group.dir[axes.w][ray]) > Float(0.0f);
+    for (const std::uint32_t axis : {axes.u, axes.v}) {
+      const Float slope(group.dir[axis][ray] * group.inverse[axes.w][ray]);
+      const Float turn = Float::load(group.dir[axis] + base) * inverse - slope;
+      const Float start = Float::load(group.origin[axis] + base) - Float(group.origin[axis][ray]) - away * slope;
+      is_beside = is_beside & (L::abs(turn) <= spread) & (L::abs(start) <= width);
+    }
+    beside |= is_beside.bits() << base;
+  }
+  return beside & lanes;
+}
+
+/// How far along its axis a beam looks from its corner. @returns below 0: its rays have all been answered.
 template <class L>
 [[nodiscard]] GRIDIRON_INLINE float group_reach(const RayGroup& group, const GroupBeam& beam, std::uint32_t axis) {
   using Float = typename L::Float;
@@ -46,79 +117,58 @@ template <class L>
     const Float start = (Float::load(group.origin[axis] + base) - Float(beam.corner[2])) * Float(beam.turn);
     const Float t = Float::load(group.t + base);
     const Float end = L::bounded_sum(t, L::abs(Float::load(group.dir[axis] + base)), start);
-    reach = L::max(L::select(t < Float(0.0f), Float(-1.0f), end), reach);
+    const auto looks = L::mask_from_bits(beam.lanes >> base & L::kAllBits) & (t >= Float(0.0f));
+    reach = L::max(L::select(looks, end, Float(-1.0f)), reach);
   }
   return L::horizontal_max(reach) * (1.0f + kGroupMargin);
 }
 
-/// Puts kBeamRays rays in lanes and makes their beam.
-/// @param rays     in any octants. @param largest  as in RayLists::trace().
-/// @param reach    gets group_reach(). @param octant  gets that of the first ray.
-/// @returns the beam's axis; kNoBeam if they make none, or floats cannot test one of them.
+/// Makes a beam of some rays of a group. @param lanes  the rays, as bits; not 0.
+/// @param largest  as in RayLists::trace(). @param reach  gets group_reach(). @param octant  gets that of the first ray.
+/// @returns the beam's axis, or kNoBeam.
 template <class L>
-[[nodiscard]] GRIDIRON_OUTLINE std::uint32_t make_group(const BatchRay* rays, float largest, RayGroup& group,
-                                                        GroupBeam& beam, float& reach, std::uint32_t& octant) {
+[[nodiscard]] GRIDIRON_OUTLINE std::uint32_t make_group_beam(const RayGroup& group, std::uint32_t lanes, float largest,
+                                                             GroupBeam& beam, float& reach, std::uint32_t& octant) {
   using Float = typename L::Float;
   static constexpr std::uint32_t kVectors = kBeamRays / L::kCount;
-  const float farthest = largest * kFarBeam;
-  const Float most_place(farthest < kGreatestListPlace ? farthest : kGreatestListPlace);
-  std::uint32_t usual = L::kAllBits;
-  for (std::uint32_t i = 0; i < kVectors; ++i) {
-    const std::uint32_t base = i * L::kCount;
-    Float place[4], dir[4];
-    load_ray_words<L>(rays[base].origin, place);
-    load_ray_words<L>(rays[base].dir, dir);
-    Float farthest_place = L::abs(place[0]);
-    const Float longest = L::max(L::max(L::abs(dir[0]), L::abs(dir[1])), L::abs(dir[2]));
-    const Float least = longest * Float(kLeastListComponent);
-    for (int axis = 0; axis < 3; ++axis) {
-      place[axis].store(group.origin[axis] + base);
-      dir[axis].store(group.dir[axis] + base);
-      const Float away = L::select(L::abs(dir[axis]) < least, L::turn_by(dir[axis], least), dir[axis]);
-      (Float(1.0f) / away).store(group.inverse[axis] + base);
-      if (axis != 0) usual &= (L::abs(place[axis]) <= most_place).bits();
-    }
-    usual &= ((farthest_place <= most_place) & (place[3] > Float(0.0f)) & (longest >= Float(kLeastListDirection)) &
-              (longest <= Float(kGreatestListDirection)))
-                 .bits();
-    place[3].store(group.t + base);
-    longest.store(group.dir_max + base);
-    L::words_of(dir[3]).store(group.ids + base);
-  }
-  if (usual != L::kAllBits || !(largest <= kGreatestListPlace)) return kNoBeam;
-  const float x = magnitude(group.dir[0][0]), y = magnitude(group.dir[1][0]), z = magnitude(group.dir[2][0]);
-  const std::uint32_t axis = x > y ? (x > z ? 0u : 2u) : (y > z ? 1u : 2u);
-  const std::uint32_t others[2] = {axis == 0 ? 1u : 0u, axis == 2 ? 1u : 2u};
-  octant = (group.dir[0][0] < 0.0f ? 1u : 0u) | (group.dir[1][0] < 0.0f ? 2u : 0u) | (group.dir[2][0] < 0.0f ? 4u : 0u);
-
-  beam.turn = group.dir[axis][0] < 0.0f ? -1.0f : 1.0f;
-  const Float turn(beam.turn);
-  Float along[kVectors], least_along(kFloatMax);
+  const std::uint32_t ray = lowest_bit(lanes);
+  const BeamAxes axes = BeamAxes::of_ray(group, ray);
+  octant = (group.dir[0][ray] < 0.0f ? 1u : 0u) | (group.dir[1][ray] < 0.0f ? 2u : 0u) |
+           (group.dir[2][ray] < 0.0f ? 4u : 0u);
+  beam.turn = group.dir[axes.w][ray] < 0.0f ? -1.0f : 1.0f;
+  beam.lanes = lanes;
+  // In the other lanes the first of the rays stands again.
+  const auto load = [&](const float* words, std::uint32_t base) GRIDIRON_INLINE_LAMBDA {
+    return L::select(L::mask_from_bits(lanes >> base & L::kAllBits), Float::load(words + base), Float(words[ray]));
+  };
+  Float along[kVectors], inverse[kVectors], least_along(kFloatMax);
   std::uint32_t forward = L::kAllBits;
   for (std::uint32_t i = 0; i < kVectors; ++i) {
-    const Float dir = Float::load(group.dir[axis] + i * L::kCount) * turn;
-    forward &= (dir > Float(0.0f)).bits();
-    along[i] = Float::load(group.origin[axis] + i * L::kCount) * turn;
+    const std::uint32_t base = i * L::kCount;
+    const Float toward = load(group.inverse[axes.w], base) * Float(beam.turn);
+    forward &= (toward > Float(0.0f)).bits();
+    inverse[i] = toward;
+    along[i] = load(group.origin[axes.w], base) * Float(beam.turn);
     least_along = L::min(along[i], least_along);
   }
   if (forward != L::kAllBits) return kNoBeam;
   const float nearest = L::horizontal_min(least_along);
   beam.corner[2] = nearest * beam.turn;
-  reach = group_reach<L>(group, beam, axis);
+  reach = group_reach<L>(group, beam, axes.w);
   const float length = reach < largest ? reach : largest, least_margin = largest * kLeastGroupMargin;
   for (std::uint32_t k = 0; k < 2; ++k) {
-    const float corner = group.origin[others[k]][0];
+    const std::uint32_t other = k == 0 ? axes.u : axes.v;
+    const float corner = group.origin[other][ray];
     beam.corner[k] = corner;
     Float low_slope(kFloatMax), high_slope(-kFloatMax), lowest(kFloatMax), highest(-kFloatMax), starts[kVectors];
     for (std::uint32_t i = 0; i < kVectors; ++i) {
       const std::uint32_t base = i * L::kCount;
-      const Float dir = Float::load(group.dir[others[k]] + base);
-      const Float slope = dir * L::abs(Float::load(group.inverse[axis] + base));
+      const Float dir = load(group.dir[other], base), slope = dir * inverse[i];
       low_slope = L::min(slope, low_slope);
       high_slope = L::max(slope, high_slope);
-      const Float start = Float::load(group.origin[others[k]] + base) - Float(corner);
+      const Float start = load(group.origin[other], base) - Float(corner);
       // Far enough for rays without end.
-      const Float far(0x1p100f), way = L::max(L::min(Float::load(group.t + base) * dir, far), -far), end = start + way;
+      const Float far(0x1p100f), way = L::max(L::min(load(group.t, base) * dir, far), -far), end = start + way;
       const Float margin = L::abs(start) * Float(kGroupMargin) + Float(least_margin);
       const Float end_margin = (L::abs(start) + L::abs(way)) * Float(kGroupMargin) + Float(least_margin);
       lowest = L::min(L::min(start - margin, end - end_margin), lowest);
@@ -149,7 +199,7 @@ template <class L>
     set(low, low_offset, L::horizontal_min(lowest), beam.planes[2 * k]);
     set(high, high_offset, L::horizontal_max(highest), beam.planes[2 * k + 1]);
   }
-  return axis;
+  return axes.w;
 }
 
 /// A group's beam in all lanes.
@@ -157,15 +207,13 @@ template <class L>
 struct GroupPlanes {
   using Float = typename L::Float;
   Float corner[3], up[4], down[4], offset[4], bound[4], turn, reach;
-  std::uint32_t u, v, w;
+  BeamAxes axes;
   bool is_backwards;
 
   GRIDIRON_INLINE GroupPlanes(const GroupBeam& beam, float looks, std::uint32_t axis)
       : turn(beam.turn),
         reach(looks),
-        u(axis == 0 ? 1 : 0),
-        v(axis == 2 ? 1 : 2),
-        w(axis),
+        axes(axis),
         is_backwards(beam.turn < 0.0f) {
     for (int i = 0; i < 3; ++i) corner[i] = Float(beam.corner[i]);
     for (int i = 0; i < 4; ++i) {
@@ -179,8 +227,8 @@ struct GroupPlanes {
   /// @returns the boxes that the group misses, of those from `base` on, as bits. @tparam Boxes  TreeNode, GroupLeaf.
   template <class Boxes>
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t missed_boxes(const Boxes& node, std::uint32_t base) const {
-    const float* const near_side = is_backwards ? node.high[w] : node.low[w];
-    const float* const far_side = is_backwards ? node.low[w] : node.high[w];
+    const float* const near_side = is_backwards ? node.high[axes.w] : node.low[axes.w];
+    const float* const far_side = is_backwards ? node.low[axes.w] : node.high[axes.w];
     const Float entry = (Float::load(near_side + base) - corner[2]) * turn,
                 exit = (Float::load(far_side + base) - corner[2]) * turn;
     const Float first = L::max(entry, Float(0.0f)), last = L::min(exit, reach);
@@ -191,10 +239,10 @@ struct GroupPlanes {
       return L::min(L::bounded_sum(up[plane], last, L::bounded_sum(down[plane], first, offset[plane])), bound[plane]);
     };
     // Differences have the sign of what they compare: one comparison decides.
-    const Float beside_u = L::max(least(0) - (Float::load(node.high[u] + base) - corner[0]),
-                                  (Float::load(node.low[u] + base) - corner[0]) - most(1));
-    const Float beside_v = L::max(least(2) - (Float::load(node.high[v] + base) - corner[1]),
-                                  (Float::load(node.low[v] + base) - corner[1]) - most(3));
+    const Float beside_u = L::max(least(0) - (Float::load(node.high[axes.u] + base) - corner[0]),
+                                  (Float::load(node.low[axes.u] + base) - corner[0]) - most(1));
+    const Float beside_v = L::max(least(2) - (Float::load(node.high[axes.v] + base) - corner[1]),
+                                  (Float::load(node.low[axes.v] + base) - corner[1]) - most(3));
     return (L::max(L::max(beside_u, beside_v), first - last) > Float(0.0f)).bits();
   }
 };

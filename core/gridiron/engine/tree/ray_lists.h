@@ -193,32 +193,61 @@ class RayLists {
     // Lists of rays, and of beams after them, will take less than what lies before.
     std::uint32_t* const beams = memory_.arena + 2 * Memory::kRays;
     static_assert(Memory::kArenaWords >= 4 * Memory::kRays && Memory::kRays >= 256);
-    std::uint32_t roots = 0, tried = 0, made = 0;
+    std::uint32_t roots = 0, tried = 0, alone = 0, made = 0;
     const bool tries = question_.are_neighbors && !question_.trusts_floats;
     listed_ = 0;
     for (std::uint32_t first = 0; first < count; first += kBeamRays) {
-      if (tries && tried - made < kVainGroups + tried / 4 * 3) {
-        std::uint32_t octant = 0;
-        const std::uint32_t beam = first / kBeamRays;
-        const std::uint32_t axis =
-            make_group<L>(memory_.rays + first, largest, memory_.groups[beam], memory_.group_beams[beam],
-                          memory_.reaches[beam], octant);
-        ++tried;
-        work_.add(Work::kListBeam);
-        if (axis != kNoBeam) {
-          beams[made] = beam_word(beam, axis, octant) | beam_mark(octant);
-          ++made;
-          roots |= 1u << (kBeamRoot + octant);
-          continue;
-        }
+      const std::uint32_t rest = count - first, here = rest < kBeamRays ? rest : kBeamRays;
+      std::uint32_t left = (2u << (here - 1)) - 1;
+      if (tries && alone <= kLoneRays + tried / kLoneShare) {
+        left = group_rays(first, left, largest, beams, made, roots);
+        tried += here;
+        alone += count_bits(left);
+        if (left == 0) continue;
       }
-      for (std::uint32_t i = 0; i < kBeamRays; i += L::kCount) add_rays(setup, first + i, words + listed_ + i);
-      const std::uint32_t rest = count - first;
-      listed_ += rest < kBeamRays ? rest : kBeamRays;
+      for (std::uint32_t i = 0; i < kBeamRays; i += L::kCount) {
+        alignas(64) std::uint32_t here_words[L::kCount];
+        add_rays(setup, first + i, here_words);
+        const std::uint32_t some = left >> i & L::kAllBits;
+        L::compress(L::Int::load(here_words), some, words + listed_);
+        listed_ += count_bits(some);
+      }
     }
     for (std::uint32_t i = 0; i < made; ++i) words[listed_ + i] = beams[i];
     listed_ += made;
     return roots;
+  }
+  // Makes beams of up to kBeamRays neighbours. @param lanes  the rays, as bits. @param beams  of the batch, as words;
+  // `made` of them so far. @returns the rays that are in none.
+  [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t group_rays(std::uint32_t first, std::uint32_t lanes, float largest,
+                                                          std::uint32_t* beams, std::uint32_t& made,
+                                                          std::uint32_t& roots) {
+    RayGroup& group = memory_.groups[first / kBeamRays];
+    std::uint32_t rest = load_group<L>(memory_.rays + first, largest, group) & lanes, left = lanes & ~rest, parts = 0;
+    work_.add(Work::kListBeam);
+    const std::uint32_t first_beam = kGroupBeams * (first / kBeamRays);
+    // All of them, or those beside the first, then beside the first of the others.
+    for (bool are_all = true; count_bits(rest) >= kLeastGroup && parts < kGroupBeams;) {
+      const std::uint32_t beam = first_beam + parts, ray = lowest_bit(rest);
+      const std::uint32_t some = are_all ? rest : lanes_beside<L>(group, rest, ray, largest) | 1u << ray;
+      std::uint32_t octant = 0, axis = kNoBeam;
+      if (count_bits(some) >= kLeastGroup) {
+        axis = make_group_beam<L>(group, some, largest, memory_.group_beams[beam], memory_.reaches[beam], octant);
+      }
+      const bool is_vain = axis == kNoBeam, was_all = are_all;
+      are_all = false;
+      if (is_vain && was_all) continue;
+      if (is_vain) {
+        left |= some;
+      } else {
+        beams[made] = beam_word(beam, axis, octant) | beam_mark(octant);
+        ++made;
+        ++parts;
+        roots |= 1u << (kBeamRoot + octant);
+      }
+      rest &= ~some;
+    }
+    return left | rest;
   }
   // What tells a beam from rays among unsorted words: to wide lanes that it misses all other roots.
   [[nodiscard]] static GRIDIRON_INLINE std::uint32_t beam_mark([[maybe_unused]] std::uint32_t octant) {
@@ -524,21 +553,23 @@ class RayLists {
     std::uint32_t pair_count = 0, ray_count = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t beam = beam_index(list[i]), axis = beam_axis(list[i]);
-      const RayGroup& group = memory_.groups[beam];
+      const RayGroup& group = memory_.groups[beam / kGroupBeams];
       std::uint32_t lanes = rays_in_box<L>(group, 0, box), triangles = 0;
       if constexpr (L::kCount < kBeamRays) lanes |= rays_in_box<L>(group, L::kCount, box) << L::kCount;
+      lanes &= memory_.group_beams[beam].lanes;
       if (lanes == 0) continue;
-      if (count_bits(lanes) > kTriangleCost) {
+      const std::uint32_t cost = question_.any_hit ? kTriangleCost : std::uint32_t{1};
+      if (count_bits(lanes) > cost) {
         triangles = triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], axis, memory_.group_leaf,
                                           leaf.count());
-        if (kTriangleCost * count_bits(triangles) <= count_bits(lanes)) {
+        if (cost * count_bits(triangles) <= count_bits(lanes)) {
           lanes = 0;
         } else {
           triangles = 0;
         }
       }
       const typename L::Int first_pair = L::Int::splat((beam * 4 + axis) * kTreeWidth);
-      const typename L::Int first_ray = L::Int::splat(list_word(beam * kBeamRays, 0));
+      const typename L::Int first_ray = L::Int::splat(list_word(beam / kGroupBeams * kBeamRays, 0));
       for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount) {
         const std::uint32_t some = triangles >> base & L::kAllBits, others = lanes >> base & L::kAllBits;
         L::compress(L::Int::load(kLaneNumbers.of + base) + first_pair, some, memory_.pairs + pair_count);
@@ -563,7 +594,8 @@ class RayLists {
     if (hit_count_ == hits) return Status::kOk;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t beam = beam_index(list[i]);
-      memory_.reaches[beam] = group_reach<L>(memory_.groups[beam], memory_.group_beams[beam], beam_axis(list[i]));
+      memory_.reaches[beam] = group_reach<L>(memory_.groups[beam / kGroupBeams], memory_.group_beams[beam],
+                                              beam_axis(list[i]));
     }
     return Status::kOk;
   }
@@ -576,7 +608,7 @@ class RayLists {
     work_.add(kShares ? Work::kListSharedGroup : Work::kListTriangleGroup, pair_count);
     for (std::uint32_t i = 0; i < pair_count; ++i) {
       const std::uint32_t pair = pairs[i];
-      const RayGroup& group = memory_.groups[pair / (4 * kTreeWidth)];
+      const RayGroup& group = memory_.groups[pair / (4 * kGroupBeams * kTreeWidth)];
       const GroupTriangle<L, kShares> triangle(memory_.triangles, memory_.group_leaf, pair % kTreeWidth);
       bool is_open = triangle.may_be_hit(group, 0);
       if constexpr (L::kCount < kBeamRays) is_open |= triangle.may_be_hit(group, L::kCount);
@@ -585,12 +617,14 @@ class RayLists {
     }
     for (std::uint32_t i = 0; i < open_count; ++i) {
       const std::uint32_t beam = pairs[i] / (4 * kTreeWidth), triangle = pairs[i] % kTreeWidth;
-      const RayGroup& group = memory_.groups[beam];
+      const std::uint32_t place = beam / kGroupBeams;
+      const RayGroup& group = memory_.groups[place];
       for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
         const auto own = L::equal(memory_.group_leaf.own_ids[triangle], group.ids + base);
-        const LeafAnswer<L> answer = test_one<kShares>(triangle, LeafRay<L>(group, base), L::kAllBits & ~own.bits());
+        const std::uint32_t there = memory_.group_beams[beam].lanes >> base & L::kAllBits & ~own.bits();
+        const LeafAnswer<L> answer = test_one<kShares>(triangle, LeafRay<L>(group, base), there);
         if ((answer.inside | answer.unsure) != 0) {
-          GRIDIRON_TRY(decide_group(beam * kBeamRays, base, answer, records[triangle]));
+          GRIDIRON_TRY(decide_group(place * kBeamRays, base, answer, records[triangle]));
         }
       }
     }
