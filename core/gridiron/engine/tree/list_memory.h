@@ -132,6 +132,7 @@ struct TermsMemory<Rays, true> {
   float reaches[kGroupBeams * (Rays / kBeamRays)];  ///< of beams: how far they look along their axis, from the corner
   GroupLeaf group_leaf;
   alignas(64) std::uint32_t pairs[kGroupBeams * Rays + kBeamRays];  ///< of beams and a leaf's triangles
+  std::uint32_t lanes[kGroupBeams * (Rays / kBeamRays)];  ///< of each beam of a list: rays that may meet a leaf, as bits
 };
 
 /// @tparam Rays      of a batch: a multiple of 16.

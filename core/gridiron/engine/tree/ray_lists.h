@@ -541,7 +541,7 @@ class RayLists {
   }
 
   // A leaf's triangles against the rays of groups: one triangle in all lanes, or one ray, whichever are fewer.
-  [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf_by_groups(TreeChild leaf, const std::uint32_t* list,
+  [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf_by_groups(TreeChild leaf, std::uint32_t* list,
                                                              std::uint32_t count, std::uint32_t* rays) {
     const VertexTriangle* records = nullptr;
     GRIDIRON_TRY(source_.leaf(leaf, records));
@@ -550,15 +550,23 @@ class RayLists {
     for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.group_leaf.own_ids[i] = no_hit(records[i].triangle_id);
     GroupBox box;
     box.template set_up<L>(memory_.group_leaf, leaf.count(), largest_);
-    std::uint32_t pair_count = 0, ray_count = 0;
+    // Without a branch that depends on a beam.
+    std::uint32_t met = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t beam = beam_index(list[i]), axis = beam_axis(list[i]);
+      const std::uint32_t word = list[i], beam = beam_index(word);
       const RayGroup& group = memory_.groups[beam / kGroupBeams];
-      std::uint32_t lanes = rays_in_box<L>(group, 0, box), triangles = 0;
+      std::uint32_t lanes = rays_in_box<L>(group, 0, box);
       if constexpr (L::kCount < kBeamRays) lanes |= rays_in_box<L>(group, L::kCount, box) << L::kCount;
       lanes &= memory_.group_beams[beam].lanes;
-      if (lanes == 0) continue;
-      const std::uint32_t cost = question_.any_hit ? kTriangleCost : std::uint32_t{1};
+      list[met] = word;
+      memory_.lanes[met] = lanes;
+      met += lanes != 0 ? std::uint32_t{1} : std::uint32_t{0};
+    }
+    const std::uint32_t cost = question_.any_hit ? kTriangleCost : std::uint32_t{1};
+    std::uint32_t pair_count = 0, ray_count = 0;
+    for (std::uint32_t i = 0; i < met; ++i) {
+      const std::uint32_t beam = beam_index(list[i]), axis = beam_axis(list[i]);
+      std::uint32_t lanes = memory_.lanes[i], triangles = 0;
       if (count_bits(lanes) > cost) {
         triangles = triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], axis, memory_.group_leaf,
                                           leaf.count());
@@ -592,7 +600,7 @@ class RayLists {
     }
     GRIDIRON_TRY(test_rays(records, leaf.count(), rays, ray_count));
     if (hit_count_ == hits) return Status::kOk;
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint32_t i = 0; i < met; ++i) {
       const std::uint32_t beam = beam_index(list[i]);
       memory_.reaches[beam] = group_reach<L>(memory_.groups[beam / kGroupBeams], memory_.group_beams[beam],
                                               beam_axis(list[i]));
