@@ -84,6 +84,12 @@ struct alignas(64) GroupBeam {
   float planes[4][4];  ///< slope or 0 if it is below 0, slope or 0 if it is above, offset; a bound beside the plane
 };
 
+/// Boxes of a node's children.
+struct ChildBoxes {
+  alignas(64) float low[3][kTreeWidth];
+  alignas(64) float high[3][kTreeWidth];
+};
+
 /// What groups need of a leaf's triangles besides TriangleLanes: their boxes, and wider bounds of errors.
 struct GroupLeaf {
   alignas(64) float low[3][kMaxTreeLeaf];
@@ -105,6 +111,8 @@ struct ListLevel {
   std::uint32_t end;               ///< what is free behind them
   std::uint32_t taken;             ///< of a part's rays, those that the child whose turn it is has seen
 
+  /// The bit in the masks of the child whose turn it is.
+  [[nodiscard]] std::uint32_t place() const { return places[turn / 8] >> 4 * (turn % 8) & 15; }
   void set_part(std::uint32_t part, std::uint32_t list, std::uint32_t count) {
     lists[part] = list;
     ray_counts[part] = count;
@@ -130,6 +138,7 @@ struct TermsMemory<Rays, true> {
   RayGroup groups[Rays / kBeamRays];
   GroupBeam group_beams[kGroupBeams * (Rays / kBeamRays)];
   float reaches[kGroupBeams * (Rays / kBeamRays)];  ///< of beams: how far they look along their axis, from the corner
+  ChildBoxes child_boxes[kMaxTreeDepth];  ///< of the nodes on the way down
   GroupLeaf group_leaf;
   alignas(64) std::uint32_t pairs[kGroupBeams * Rays + kBeamRays];  ///< of beams and a leaf's triangles
   std::uint32_t lanes[kGroupBeams * (Rays / kBeamRays)];  ///< of each beam of a list: rays that may meet a leaf, as bits

@@ -315,41 +315,16 @@ template <class L>
   return ~missed & ((2u << (count - 1)) - 1);
 }
 
-/// A box around a leaf's triangles, grown as those of nodes are.
-struct GroupBox {
-  float low[3], high[3];
-
-  /// @param count  of triangles. @param largest  as in RayLists::trace().
-  template <class L>
-  GRIDIRON_INLINE void set_up(const GroupLeaf& leaf, std::uint32_t count, float largest) {
-    using Float = typename L::Float;
-    // Behind the last triangle of a group of lanes it stands again.
-    const bool has_more = L::kCount < kMaxTreeLeaf && count > L::kCount;
-    for (int axis = 0; axis < 3; ++axis) {
-      float least = L::horizontal_min(Float::load(leaf.low[axis]));
-      float most = L::horizontal_max(Float::load(leaf.high[axis]));
-      if (has_more) {
-        const float other_least = L::horizontal_min(Float::load(leaf.low[axis] + L::kCount % kMaxTreeLeaf));
-        const float other_most = L::horizontal_max(Float::load(leaf.high[axis] + L::kCount % kMaxTreeLeaf));
-        least = other_least < least ? other_least : least;
-        most = other_most > most ? other_most : most;
-      }
-      const float margin = tree_margin(largest);
-      low[axis] = least - (magnitude(least) * kTreeGrowth + margin);
-      high[axis] = most + (magnitude(most) * kTreeGrowth + margin);
-    }
-  }
-};
-
-/// @returns the rays of a group, from `base` on, that may meet a box, as bits: box_test.h.
+/// @returns the rays of a group, from `base` on, that may meet a child's box, as bits: box_test.h.
 template <class L>
 [[nodiscard]] GRIDIRON_INLINE std::uint32_t rays_in_box(const RayGroup& group, std::uint32_t base,
-                                                        const GroupBox& box) {
+                                                        const ChildBoxes& boxes, std::uint32_t child) {
   using Float = typename L::Float;
   Float first(0.0f), last = Float::load(group.t + base);
   for (int axis = 0; axis < 3; ++axis) {
     const Float origin = Float::load(group.origin[axis] + base), inverse = Float::load(group.inverse[axis] + base);
-    const Float one = (Float(box.low[axis]) - origin) * inverse, other = (Float(box.high[axis]) - origin) * inverse;
+    const Float one = (Float(boxes.low[axis][child]) - origin) * inverse,
+                other = (Float(boxes.high[axis][child]) - origin) * inverse;
     first = L::max(L::min(one, other), first);
     last = L::min(L::max(one, other), last);
   }

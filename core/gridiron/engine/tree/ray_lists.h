@@ -318,13 +318,15 @@ class RayLists {
       }
       work_.charge_to(Work::kListChild);
       const TreeChild child = level.children[level.turn];
+      [[maybe_unused]] const std::uint32_t place = level.place();
       const std::uint32_t selected = select(level, depth);
       if (selected == 0) continue;
       if (child.is_leaf()) {
         if constexpr (kHasGroups) {
           if (has_beams(depth)) {
             std::uint32_t* const beams = memory_.arena + level.end;
-            GRIDIRON_TRY(visit_leaf_by_groups(child, beams, selected, beams + step_up(selected)));
+            GRIDIRON_TRY(visit_leaf_by_groups(child, memory_.child_boxes[depth], place, beams, selected,
+                                              beams + step_up(selected)));
             continue;
           }
         }
@@ -340,7 +342,7 @@ class RayLists {
   // room for. Below the child's level each has a step of rays, so that there is always room for one.
   [[nodiscard]] std::uint32_t select(ListLevel& level, std::uint32_t depth) {
     work_.add(Work::kListChild);
-    const std::uint32_t child = level.places[level.turn / 8] >> 4 * (level.turn % 8) & 15;
+    const std::uint32_t child = level.place();
     const std::uint32_t part = child / (kTreeWidth / kParts);
     const std::uint32_t below = (kMaxTreeDepth - 1 - depth) * kLevelWords;
     const std::uint32_t room = Memory::kArenaWords - level.end - below;
@@ -404,6 +406,13 @@ class RayLists {
       beam_levels_ &= ~bit;
       if (are_beams) {
         if constexpr (kHasGroups) {
+          ChildBoxes& boxes = memory_.child_boxes[&level - memory_.levels];
+          for (int axis = 0; axis < 3; ++axis) {
+            for (std::uint32_t i = 0; i < kTreeWidth; i += L::kCount) {
+              Float::load(node->low[axis] + i).store(boxes.low[axis] + i);
+              Float::load(node->high[axis] + i).store(boxes.high[axis] + i);
+            }
+          }
           open = mark_groups<L>(*node, memory_.group_beams, memory_.reaches, memory_.arena + list, count, work_);
         } else {
           open = mark_beams<L>(*node, memory_.beams.of, memory_.arena + list, count, work_);
@@ -541,27 +550,28 @@ class RayLists {
   }
 
   // A leaf's triangles against the rays of groups: one triangle in all lanes, or one ray, whichever are fewer.
-  [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf_by_groups(TreeChild leaf, std::uint32_t* list,
+  // @param boxes  of the node, the leaf's in place `child`. @param rays  room for the words of all rays of the list.
+  [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf_by_groups(TreeChild leaf, const ChildBoxes& boxes,
+                                                             std::uint32_t child, std::uint32_t* list,
                                                              std::uint32_t count, std::uint32_t* rays) {
-    const VertexTriangle* records = nullptr;
-    GRIDIRON_TRY(source_.leaf(leaf, records));
-    work_.add(share_origin() ? Work::kListSharedLeaf : Work::kListLeaf);
-    set_up_leaf<L>(records, leaf.count(), memory_.triangles, &memory_.group_leaf);
-    for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.group_leaf.own_ids[i] = no_hit(records[i].triangle_id);
-    GroupBox box;
-    box.template set_up<L>(memory_.group_leaf, leaf.count(), largest_);
     // Without a branch that depends on a beam.
     std::uint32_t met = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t word = list[i], beam = beam_index(word);
       const RayGroup& group = memory_.groups[beam / kGroupBeams];
-      std::uint32_t lanes = rays_in_box<L>(group, 0, box);
-      if constexpr (L::kCount < kBeamRays) lanes |= rays_in_box<L>(group, L::kCount, box) << L::kCount;
+      std::uint32_t lanes = rays_in_box<L>(group, 0, boxes, child);
+      if constexpr (L::kCount < kBeamRays) lanes |= rays_in_box<L>(group, L::kCount, boxes, child) << L::kCount;
       lanes &= memory_.group_beams[beam].lanes;
       list[met] = word;
       memory_.lanes[met] = lanes;
       met += lanes != 0 ? std::uint32_t{1} : std::uint32_t{0};
     }
+    if (met == 0) return Status::kOk;
+    const VertexTriangle* records = nullptr;
+    GRIDIRON_TRY(source_.leaf(leaf, records));
+    work_.add(share_origin() ? Work::kListSharedLeaf : Work::kListLeaf);
+    set_up_leaf<L>(records, leaf.count(), memory_.triangles, &memory_.group_leaf);
+    for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.group_leaf.own_ids[i] = no_hit(records[i].triangle_id);
     const std::uint32_t cost = question_.any_hit ? kTriangleCost : std::uint32_t{1};
     std::uint32_t pair_count = 0, ray_count = 0;
     for (std::uint32_t i = 0; i < met; ++i) {
