@@ -190,9 +190,11 @@ class RayLists {
   template <bool kSetsTerms>
   [[nodiscard]] GRIDIRON_INLINE std::uint32_t set_up_groups(RaySetup<L, kSetsTerms>& setup, std::uint32_t count,
                                                             float largest, std::uint32_t* words) {
-    // Lists of rays, and of beams after them, will take less than what lies before.
-    std::uint32_t* const beams = memory_.arena + 2 * Memory::kRays;
-    static_assert(Memory::kArenaWords >= 4 * Memory::kRays && Memory::kRays >= 256);
+    // Between the lists, which will be written from the front, and the unsorted words at the end.
+    static constexpr std::uint32_t kListWords = Memory::kRays + kRoots * kStep,
+                                   kBeams = kGroupBeams * (Memory::kRays / kBeamRays);
+    static_assert(Memory::kArenaWords >= kListWords + kBeams + Memory::kRays);
+    std::uint32_t* const beams = memory_.arena + kListWords;
     std::uint32_t roots = 0, tried = 0, alone = 0, made = 0;
     const bool tries = question_.are_neighbors && !question_.trusts_floats;
     listed_ = 0;

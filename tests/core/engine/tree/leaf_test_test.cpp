@@ -346,7 +346,7 @@ TYPED_TEST(LeafTest, ManyRaysAreSetUpAsOne) {
       const float largest = round % 50 == 0 ? 0x1p100f : 1.0f;
       alignas(64) BatchRay many[kCount];
       alignas(64) RayTerms terms[kCount] = {};
-      alignas(64) std::uint32_t words[2 * kCount];
+      alignas(64) std::uint32_t words[kCount];
       std::vector<BatchRay> one(kCount);
       float farthest[3] = {};
       for (std::uint32_t i = 0; i < kCount; ++i) {
@@ -372,7 +372,7 @@ TYPED_TEST(LeafTest, ManyRaysAreSetUpAsOne) {
         const std::uint32_t octant = set_up_list_ray<TypeParam>(one[i], largest);
         octants |= 1u << octant;
         ASSERT_EQ(std::memcmp(&many[i], &one[i], sizeof(BatchRay)), 0) << i;
-        ASSERT_EQ(words[kCount + i], list_word(kCount + i, octant) | (kMaskBits & ~(1u << octant)));
+        ASSERT_EQ(words[i], list_word(kCount + i, octant) | (kMaskBits & ~(1u << octant)));
         if constexpr (kHasTerms) {
           RayTerms own{};
           set_up_ray_terms<TypeParam>(one[i], own);

@@ -285,6 +285,9 @@ std::vector<Ray> neighbor_rays(const TestMesh& mesh, std::uint32_t groups, std::
       Ray ray{kind % 2 == 0 ? start : start + place(size), {}, t};
       ray.dir = target - ray.origin;
       if (group % 16 == 15 && i == 7) ray.dir = -ray.dir;
+      // Two beams side by side, or one and rays beside it.
+      if (group % 16 == 11 && i >= 8) ray.origin = ray.origin + 0.5f * scale * Vec3(1, 1, -1);
+      if (group % 16 == 9 && i >= 11) ray.dir = place(scale);
       if (group % 16 == 13 && i == 3) ray.dir[static_cast<int>(group / 16 % 3)] = 0.0f;
       rays.push_back(ray);
     }
@@ -308,10 +311,14 @@ void expect_beams_find_the_same(MemoryTree& tree, const std::vector<Ray>& rays, 
   WorkCounters single;
   const auto expected = answers<L, ListMemory<Rays, 0, false>>(tree, rays, any_hit, single);
   const auto found = answers<L, ListMemory<Rays, 512, true>>(tree, rays, any_hit, work, true);
+  WorkCounters groups;
+  const auto by_groups = answers<L, ListMemory<Rays, 512, true, true>>(tree, rays, any_hit, groups, true);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_EQ(found[i].id == kNoTriangle, expected[i].id == kNoTriangle) << i;
+    ASSERT_EQ(by_groups[i].id == kNoTriangle, expected[i].id == kNoTriangle) << i;
     if (!any_hit) {
       ASSERT_EQ(found[i], expected[i]) << i;
+      ASSERT_EQ(by_groups[i], expected[i]) << i;
     }
   }
 }
@@ -361,12 +368,15 @@ TYPED_TEST(RayListsTest, BeamsAndSharedOriginsFindWhatSingleRaysDo) {
             ASSERT_EQ(with_terms[i], expected[i]) << i;
           }
         }
+        if (TypeParam::kCount > 4) {
+          EXPECT_GT(by_terms[Work::kListBeamNode], 0u);
+        }
         if (!kUsesBeams<TypeParam>) continue;
         EXPECT_EQ(beams[Work::kListSharedBox] != 0, is_shared);
         EXPECT_EQ(beams[Work::kListSharedGroup] != 0, is_shared);
         EXPECT_GT(beams[Work::kListBeamNode], 0u);
-        EXPECT_EQ(by_terms[Work::kListSharedBox] != 0, is_shared);
-        EXPECT_EQ(by_terms[Work::kListBeamNode], beams[Work::kListBeamNode]);
+        EXPECT_EQ(by_terms[Work::kListSharedGroup] != 0, is_shared);
+        EXPECT_GT(by_terms[Work::kListBeamNode], 0u);
         EXPECT_LT(beams[Work::kListRayNode] + beams[Work::kListSharedBox],
                   single[Work::kListRayNode] + single[Work::kListBoxQuad]);
       }
