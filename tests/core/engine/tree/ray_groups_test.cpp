@@ -124,7 +124,16 @@ TYPED_TEST(RayGroupsTest, BeamsMeetTheBoxesThatTheirRaysMeet) {
 // Rays at triangles, at their edges and corners, and past them.
 template <class L>
 void aim_at_triangle(const VertexTriangle& triangle, bool is_shared, TestRandom& random, Group& group) {
-  const Vec3 start(random.between(-1.0f, 1.0f), random.between(-1.0f, 1.0f), random.between(-1.0f, 1.0f));
+  Vec3 start(random.between(-1.0f, 1.0f), random.between(-1.0f, 1.0f), random.between(-1.0f, 1.0f));
+  // Now and then so near to the plane that floats cannot tell on which side.
+  const bool is_near = random.below(3) == 0;
+  if (is_near) {
+    const float away = std::ldexp(1.0f, -22 - static_cast<int>(random.below(8)));
+    for (int axis = 0; axis < 3; ++axis) {
+      start[axis] = 0.4f * triangle.v[0][axis] + 0.3f * triangle.v[1][axis] + 0.3f * triangle.v[2][axis] +
+                    random.between(-away, away);
+    }
+  }
   const bool is_beside = random.below(4) == 0;
   for (BatchRay& ray : group.rays) {
     const float a = is_beside ? random.between(1.01f, 1.2f) : random.below(3) == 0 ? 0.0f : random.between(0.0f, 1.2f);
@@ -132,13 +141,15 @@ void aim_at_triangle(const VertexTriangle& triangle, bool is_shared, TestRandom&
     for (int axis = 0; axis < 3; ++axis) {
       const float target = triangle.v[0][axis] + a * (triangle.v[1][axis] - triangle.v[0][axis]) +
                            b * (triangle.v[2][axis] - triangle.v[0][axis]);
-      ray.origin[axis] = start[axis] + (is_shared ? 0.0f : random.between(-0.01f, 0.01f));
-      ray.dir[axis] = target - ray.origin[axis];
+      ray.origin[axis] = start[axis] + (is_shared ? 0.0f : random.between(-1e-7f, 1e-7f));
+      ray.dir[axis] = is_near ? random.between(-1.0f, 1.0f) : target - ray.origin[axis];
     }
     const std::uint32_t kind = random.below(3);
     ray.t = kind == 0 ? kFloatMax : kind == 1 ? 1.0f : 0.5f;
     ray.id = no_hit(random.below(8) == 0 ? triangle.triangle_id : std::uint32_t{kNoTriangle});
   }
+  // One ray in all lanes: no other keeps the triangle open for it.
+  if (random.below(2) == 0) std::fill(std::begin(group.rays) + 1, std::end(group.rays), group.rays[0]);
   (void)load_group<L>(group.rays, 2.0f, group.lanes);
   for (std::uint32_t i = 0; i < kBeamRays; ++i) group.rays[i].dir_max = group.lanes.dir_max[i];
 }
@@ -148,7 +159,7 @@ TYPED_TEST(RayGroupsTest, TrianglesThatRaysHitStayOpenAndDistancesAreThoseOfRays
     constexpr std::uint32_t kCount = TypeParam::kCount;
     TestRandom random(7);
     std::uint32_t hits = 0, closed = 0, wrong = 0, closed_misses = 0, settled = 0, open = 0;
-    for (std::uint32_t round = 0; round < 4000; ++round) {
+    for (std::uint32_t round = 0; round < 20000; ++round) {
       const bool is_shared = round % 2 == 0;
       VertexTriangle triangle{};
       const float size = std::ldexp(1.0f, -static_cast<int>(random.below(12)));
@@ -193,7 +204,7 @@ TYPED_TEST(RayGroupsTest, TrianglesThatRaysHitStayOpenAndDistancesAreThoseOfRays
     EXPECT_EQ(wrong, 0u);
     // Or the bounds would rule nothing out.
     EXPECT_GT(closed_misses, 100u);
-    EXPECT_LT(open, settled / 20);
+    EXPECT_LT(open, settled / 4);
   }
 }
 
