@@ -114,7 +114,10 @@ class OwnedTree {
 std::vector<MemoryRay> memory_rays(std::span<const peer::PeerRay> rays) {
   std::vector<MemoryRay> copies;
   for (const peer::PeerRay& ray : rays) {
-    copies.push_back({{ray.origin[0], ray.origin[1], ray.origin[2]}, ray.t, {ray.dir[0], ray.dir[1], ray.dir[2]}, kNoTriangle});
+    copies.push_back({{ray.origin[0], ray.origin[1], ray.origin[2]},
+                      ray.t,
+                      {ray.dir[0], ray.dir[1], ray.dir[2]},
+                      kNoTriangle});
   }
   return copies;
 }

@@ -5,8 +5,6 @@
 
 #include <cstddef>
 #include <cstring>
-#include <cstdio>
-#include <cstdlib>
 
 #include "bench/tree_lists.h"
 
@@ -82,7 +80,4 @@ void gridiron::bench::GRIDIRON_ENTRY_NAME(const ListTree& tree, std::span<const 
       store_answers(memory.rays + i, any_hit, answers[(first + i) / kGroupRays]);
     }
   }
-  if (getenv("COUNTS")) { const double n=static_cast<double>(rays.size())/16.0; auto p=[&](const char*t,Work k){ std::fprintf(stderr," %s %.2f",t,work[k]/n);};
-  std::fprintf(stderr,"L%d any %d nb %d per16:",GRIDIRON_ENTRY_LANES,any_hit,are_neighbors);
-  p("beam",Work::kListBeam);p("node",Work::kListNode);p("beamnode",Work::kListBeamNode);p("raynode",Work::kListRayNode);p("leaf",Work::kListLeaf);p("sleaf",Work::kListSharedLeaf);p("grp",Work::kListTriangleGroup);p("sgrp",Work::kListSharedGroup);p("entry",Work::kListEntry);p("child",Work::kListChild);p("cand",Work::kListCandidate);p("dist",Work::kRayDistance);p("exact",Work::kExactDistance);std::fprintf(stderr,"\n");}
 }

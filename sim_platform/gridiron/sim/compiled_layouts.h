@@ -6,6 +6,7 @@
 #include <gridiron/store/local_store.h>
 
 #include <cstdint>
+#include <type_traits>
 
 namespace gridiron::sim {
 
@@ -44,6 +45,29 @@ using SweepLayouts =
 /// For frames with effects: in Mode::kPlain for every lane count, in the others with 4 lanes.
 using EffectLayouts = LayoutList<EffectLayout256K<kAllEffects, 0>, EffectLayout256K<kAllEffects, 8>,
                                  EffectLayout256K<kAllEffects, 32>, EffectLayout64K<kAllEffects>>;
+
+/// What wide lanes render with in Mode::kPlain in place of a layout of 256 KB for effects: batches as large as pay on a
+/// host, with memory for groups and terms of rays. No chip has it.
+template <class Layout>
+struct HostLayout : Layout {
+  /// @cond
+  static constexpr std::uint32_t kArenaBytes = 1024 * 1024;
+  static constexpr std::uint32_t kBatchRays = 2048;
+  static constexpr std::uint32_t kSpareListWords = 2048;
+  static constexpr bool kHasGroups = true;
+  /// @endcond
+};
+
+/// @returns a std::type_identity of what a layout is rendered with.
+/// @tparam IsPlain  in Mode::kPlain. @tparam Lanes  how many there are.
+template <class Layout, bool IsPlain, std::uint32_t Lanes>
+[[nodiscard]] constexpr auto used_layout() {
+  if constexpr (IsPlain && Lanes > 4 && requires { requires Layout::kHasBeams; }) {
+    return std::type_identity<HostLayout<Layout>>{};
+  } else {
+    return std::type_identity<Layout>{};
+  }
+}
 
 /// @returns the most lanes that the layout has memory for.
 template <class Layout>

@@ -9,6 +9,7 @@
 #include <gridiron/store/local_store.h>
 
 #include <new>
+#include <type_traits>
 
 namespace gridiron::sim {
 
@@ -24,7 +25,11 @@ template <Platform P>
 Status render(LayoutChoice layout, std::byte* store, P& core, MainAddress frame, SpillRegion spill) {
   Status status = Status::kUnsupportedFrame;
   visit_layout(GRIDIRON_ENTRY_LAYOUTS{}, layout, [&]<class Layout>() {
-    if constexpr (GRIDIRON_ENTRY_LANES <= most_lanes<Layout>()) status = render_in<Layout>(store, core, frame, spill);
+    if constexpr (GRIDIRON_ENTRY_LANES <= most_lanes<Layout>()) {
+      constexpr bool kIsPlain = std::is_same_v<P, PlainCore>;
+      using Used = typename decltype(used_layout<Layout, kIsPlain, GRIDIRON_ENTRY_LANES>())::type;
+      status = render_in<Used>(store, core, frame, spill);
+    }
   });
   return status;
 }

@@ -210,7 +210,12 @@ struct RecordReader {
   const LayoutChoice layout = {options.store, record.tile_width, options.packet_width, has_effects};
   if (!is_built(layout, options.mode, options.lanes)) return refuse(Status::kUnsupportedFrame);
   shape.arena_bytes = arena_bytes(options.store);
-  const auto take_data_bytes = [&shape]<class Layout>() { shape.data_bytes = sizeof(LocalStore<Layout>); };
+  const bool uses_host_layout = options.mode == Mode::kPlain && options.lanes > 4;
+  const auto take_data_bytes = [&shape, uses_host_layout]<class Layout>() {
+    using OnHost = typename decltype(used_layout<Layout, true, 16>())::type;
+    shape.data_bytes = uses_host_layout ? sizeof(LocalStore<OnHost>) : sizeof(LocalStore<Layout>);
+    if (uses_host_layout) shape.arena_bytes = OnHost::kArenaBytes;
+  };
   visit_layout(CommonLayouts{}, layout, take_data_bytes);
   visit_layout(SweepLayouts{}, layout, take_data_bytes);
   visit_layout(EffectLayouts{}, layout, take_data_bytes);

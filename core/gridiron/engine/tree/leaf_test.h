@@ -230,7 +230,7 @@ template <class L, bool kIsOne>
 /// half of the rays pass through their own triangle's plane within its sides. Few lanes would gain no more than it
 /// costs.
 template <class L, bool kBounded, bool kIsOne>
-inline constexpr bool kFiltersFirst = L::kRoundsOnce && kBounded && !kIsOne;
+inline constexpr bool kFiltersFirst = L::kRoundsOnce&& kBounded && !kIsOne;
 
 /// Sums of products. @tparam kBounded  what is unsure is decided exactly. With Accuracy::kFast it is not always, so all
 /// lanes compute the same bits.

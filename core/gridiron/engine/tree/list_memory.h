@@ -68,7 +68,7 @@ struct alignas(64) RayGroup {
   float origin[3][kBeamRays];
   float t[kBeamRays];  ///< as in BatchRay
   float dir[3][kBeamRays];
-  float inverse[3][kBeamRays];
+  float inverse[3][kBeamRays];  ///< as in BatchRay
   float dir_max[kBeamRays];
   std::uint32_t ids[kBeamRays];  ///< as in BatchRay, before anything was hit
 };
@@ -78,10 +78,10 @@ inline constexpr std::uint32_t kGroupBeams = 2;
 
 /// What bounds rays of a group, seen from a corner: ray_groups.h.
 struct alignas(64) GroupBeam {
-  float corner[3];     ///< u, v, w
-  float turn;          ///< 1; -1: they run backwards along their axis
+  float corner[3];      ///< u, v, w
+  float turn;           ///< 1; -1: they run backwards along their axis
   std::uint32_t lanes;  ///< the rays of the group that it bounds, as bits
-  float planes[4][4];  ///< slope or 0 if it is below 0, slope or 0 if it is above, offset; a bound beside the plane
+  float planes[4][4];   ///< slope or 0 if it is below 0, slope or 0 if it is above, offset; a bound beside the plane
 };
 
 /// Boxes of a node's children.
@@ -138,16 +138,18 @@ struct TermsMemory<Rays, true> {
   RayGroup groups[Rays / kBeamRays];
   GroupBeam group_beams[kGroupBeams * (Rays / kBeamRays)];
   float reaches[kGroupBeams * (Rays / kBeamRays)];  ///< of beams: how far they look along their axis, from the corner
-  ChildBoxes child_boxes[kMaxTreeDepth];  ///< of the nodes on the way down
+  ChildBoxes child_boxes[kMaxTreeDepth];            ///< of the nodes on the way down
   GroupLeaf group_leaf;
   alignas(64) std::uint32_t pairs[kGroupBeams * Rays + kBeamRays];  ///< of beams and a leaf's triangles
-  std::uint32_t lanes[kGroupBeams * (Rays / kBeamRays)];  ///< of each beam of a list: rays that may meet a leaf, as bits
+  std::uint32_t
+      lanes[kGroupBeams * (Rays / kBeamRays)];  ///< of each beam of a list: rays that may meet a leaf, as bits
 };
 
 /// @tparam Rays      of a batch: a multiple of 16.
 /// @tparam Spare     words of the arena beyond the least.
 /// @tparam Beams     whether there is memory for beams; with it comes code for rays of one origin.
-/// @tparam HasTerms  whether there is room for terms of rays. With them lanes that round a product and a sum once test
+/// @tparam HasTerms  whether there is room for terms of rays, and with beams for groups. With them lanes that round a
+/// product and a sum once test
 ///                   boxes faster; they change no answer.
 template <std::uint32_t Rays, std::uint32_t Spare, bool Beams, bool HasTerms = false>
 struct alignas(64) ListMemory : TermsMemory<Rays, HasTerms> {

@@ -222,7 +222,8 @@ class RaySetup {
   }
 
   /// Prepares as many rays as there are lanes.
-  /// @param terms  of the rays, if they have some. @param words  get the rays' words, aligned to lanes; each misses all octants but its
+  /// @param terms  of the rays, if they have some. @param words  get the rays' words, aligned to lanes; each misses all
+  /// octants but its
   ///               own. @param first  the first ray's number.
   GRIDIRON_INLINE void add(BatchRay* rays, RayTerms* terms, std::uint32_t first, std::uint32_t* words) {
     static constexpr auto kWords = [] {

@@ -20,16 +20,16 @@
 
 namespace gridiron {
 
-// A group runs along an axis w; u and v are the others, in the order of the axes. Seen from its corner, w is measured the
-// way that the rays run: no ray begins at w < 0. With slopes m = d.u / |d.w| of its rays, each of which begins at (U, W),
-// s <= m for all of them and the offset o <= U - s W for all, a point of any ray has u >= s w + o: that is the lower
-// plane of u, likewise the upper one, and those of v.
+// A group runs along an axis w; u and v are the others, in the order of the axes. Seen from its corner, w is measured
+// the way that the rays run: no ray begins at w < 0. With slopes m = d.u / |d.w| of its rays, each of which begins at
+// (U, W), s <= m for all of them and the offset o <= U - s W for all, a point of any ray has u >= s w + o: that is the
+// lower plane of u, likewise the upper one, and those of v.
 //
 // With e = 2^-23, the largest relative error of an operation in any rounding mode: a slope has an error of 2 e |m|; U
-// and W one of e each of themselves, and an offset 3 e (|U| + |s| W) with them. In the test of a box its sides seen from
-// the corner have one of e; s w one of 2 e with that, and the sum rounds once more. Where the box just touches, its u is
-// |s| w + |o| at most. So kGroupMargin of each slope, and of |U| + |s| W, is enough. What is lost below the least normal
-// float is less than kLeastGroupMargin of the scene.
+// and W one of e each of themselves, and an offset 3 e (|U| + |s| W) with them. In the test of a box its sides seen
+// from the corner have one of e; s w one of 2 e with that, and the sum rounds once more. Where the box just touches,
+// its u is |s| w + |o| at most. So kGroupMargin of each slope, and of |U| + |s| W, is enough. What is lost below the
+// least normal float is less than kLeastGroupMargin of the scene.
 inline constexpr float kGroupMargin = 0x1p-19f, kLeastGroupMargin = 0x1p-40f;
 /// Beams whose slopes differ by more would meet too much, or whose rays begin farther apart, in the length of the beam,
 /// or the scene's size.
@@ -124,7 +124,8 @@ template <class L>
 }
 
 /// Makes a beam of some rays of a group. @param lanes  the rays, as bits; not 0.
-/// @param largest  as in RayLists::trace(). @param reach  gets group_reach(). @param octant  gets that of the first ray.
+/// @param largest  as in RayLists::trace(). @param reach  gets group_reach(). @param octant  gets that of the first
+/// ray.
 /// @returns the beam's axis, or kNoBeam.
 template <class L>
 [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t make_group_beam(const RayGroup& group, std::uint32_t lanes, float largest,
@@ -211,10 +212,7 @@ struct GroupPlanes {
   bool is_backwards;
 
   GRIDIRON_INLINE GroupPlanes(const GroupBeam& beam, float looks, std::uint32_t axis)
-      : turn(beam.turn),
-        reach(looks),
-        axes(axis),
-        is_backwards(beam.turn < 0.0f) {
+      : turn(beam.turn), reach(looks), axes(axis), is_backwards(beam.turn < 0.0f) {
     for (int i = 0; i < 3; ++i) corner[i] = Float(beam.corner[i]);
     for (int i = 0; i < 4; ++i) {
       up[i] = Float(beam.planes[i][0]);
@@ -250,15 +248,16 @@ struct GroupPlanes {
 /// Marks the boxes of a node that each group of a list misses. @returns those that any group meets.
 template <class L>
 [[nodiscard]] GRIDIRON_OUTLINE std::uint32_t mark_groups(const TreeNode& node, const GroupBeam* beams,
-                                                         const float* reaches, std::uint32_t* list,
-                                                         std::uint32_t count, WorkCounters& work) {
+                                                         const float* reaches, std::uint32_t* list, std::uint32_t count,
+                                                         WorkCounters& work) {
   work.add(Work::kListBeamNode, count);
   std::uint32_t closed = kMaskBits;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t word = list[i], beam = beam_index(word);
     const GroupPlanes<L> planes(beams[beam], reaches[beam], beam_axis(word));
     std::uint32_t missed = 0;
-    for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount) missed |= planes.missed_boxes(node, base) << base;
+    for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount)
+      missed |= planes.missed_boxes(node, base) << base;
     list[i] = word | missed;
     closed &= missed;
   }
@@ -290,8 +289,7 @@ template <class L>
     // As distance_interval() has it.
     const Double inverse = Double(1.0) / denominator, quotient = volume * inverse, size = L::abs(quotient);
     const Double turn = size * (Double::load_floats(group.dir_max + first) * Double(normal_error));
-    const Double error =
-        (volume_size * Double(kDistanceError) + turn) * L::abs(inverse) + Double(0x1p-49) * size;
+    const Double error = (volume_size * Double(kDistanceError) + turn) * L::abs(inverse) + Double(0x1p-49) * size;
     static constexpr std::int64_t kHalfStep = std::int64_t{1} << 28, kRebias = std::int64_t{1023 - 127} << 23;
     const Long low = ((quotient - error).pattern() + kHalfStep) >> 29;
     const Long high = ((quotient + error).pattern() + kHalfStep) >> 29;
@@ -313,6 +311,18 @@ template <class L>
   std::uint32_t missed = 0;
   for (std::uint32_t base = 0; base < count; base += L::kCount) missed |= planes.missed_boxes(leaf, base) << base;
   return ~missed & ((2u << (count - 1)) - 1);
+}
+
+/// Keeps the boxes of a node's children while leaves are visited.
+template <class L>
+GRIDIRON_INLINE void copy_boxes(const TreeNode& node, ChildBoxes& boxes) {
+  using Float = typename L::Float;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::uint32_t i = 0; i < kTreeWidth; i += L::kCount) {
+      Float::load(node.low[axis] + i).store(boxes.low[axis] + i);
+      Float::load(node.high[axis] + i).store(boxes.high[axis] + i);
+    }
+  }
 }
 
 /// @returns the rays of a group, from `base` on, that may meet a child's box, as bits: box_test.h.
@@ -376,8 +386,7 @@ class GroupTriangle : LeafSums<L, true> {
       turn = error * q.dir_max;
       beside = -sum(sum(most, more_word(kWideEdge), more_word(kLeast)), q.dir_max, least);
       before = -sum(most, error, ahead + Float(2.0f * kLeastAhead));
-      behind = sum(most, -error, ahead) -
-               sum(sum(size, Float(1.0f + 0x1p-20f), turn), q.t, Float(2.0f * kLeastAhead));
+      behind = sum(most, -error, ahead) - sum(sum(size, Float(1.0f + 0x1p-20f), turn), q.t, Float(2.0f * kLeastAhead));
     }
     const Float away = L::min(L::max(before, behind), size - turn);
     return (L::kAllBits & ~((L::max(away, beside) > Float(0.0f)) | is_own).bits()) != 0;

@@ -74,7 +74,7 @@ class RayLists {
   static constexpr std::uint32_t kStep = kListStep<L>, kParts = kBoxParts<L>;
   static constexpr std::uint32_t kLevelWords = (1 + kListParts<L>)*kStep;
   // Wide lanes with memory for groups test their rays at once.
-  static constexpr bool kHasGroups = L::kCount > 4 && Memory::kHasTerms && Memory::kHasBeams;
+  static constexpr bool kHasGroups = L::kCount > 4 && Memory::kHasTerms&& Memory::kHasBeams;
   static constexpr bool kHasBeams = kHasGroups || (kUsesBeams<L> && Memory::kHasBeams);
   static_assert(!kHasBeams || Memory::template kHoldsBeams<L>);
   static constexpr std::uint32_t kRoots = kHasBeams ? 2 * kBeamRoot : kBeamRoot;
@@ -236,16 +236,17 @@ class RayLists {
       if (count_bits(some) >= kLeastGroup) {
         axis = make_group_beam<L>(group, some, largest, memory_.group_beams[beam], memory_.reaches[beam], octant);
       }
-      const bool is_vain = axis == kNoBeam, was_all = are_all;
+      const bool was_all = are_all;
       are_all = false;
-      if (is_vain && was_all) continue;
-      if (is_vain) {
-        left |= some;
-      } else {
+      if (axis != kNoBeam) {
         beams[made] = beam_word(beam, axis, octant) | beam_mark(octant);
         ++made;
         ++parts;
         roots |= 1u << (kBeamRoot + octant);
+      } else if (was_all) {
+        continue;
+      } else {
+        left |= some;
       }
       rest &= ~some;
     }
@@ -408,13 +409,7 @@ class RayLists {
       beam_levels_ &= ~bit;
       if (are_beams) {
         if constexpr (kHasGroups) {
-          ChildBoxes& boxes = memory_.child_boxes[&level - memory_.levels];
-          for (int axis = 0; axis < 3; ++axis) {
-            for (std::uint32_t i = 0; i < kTreeWidth; i += L::kCount) {
-              Float::load(node->low[axis] + i).store(boxes.low[axis] + i);
-              Float::load(node->high[axis] + i).store(boxes.high[axis] + i);
-            }
-          }
+          copy_boxes<L>(*node, memory_.child_boxes[&level - memory_.levels]);
           open = mark_groups<L>(*node, memory_.group_beams, memory_.reaches, memory_.arena + list, count, work_);
         } else {
           open = mark_beams<L>(*node, memory_.beams.of, memory_.arena + list, count, work_);
@@ -577,18 +572,14 @@ class RayLists {
     const std::uint32_t cost = question_.any_hit ? kTriangleCost : std::uint32_t{1};
     std::uint32_t pair_count = 0, ray_count = 0;
     for (std::uint32_t i = 0; i < met; ++i) {
-      const std::uint32_t beam = beam_index(list[i]), axis = beam_axis(list[i]);
+      const std::uint32_t beam = beam_index(list[i]);
       std::uint32_t lanes = memory_.lanes[i], triangles = 0;
       if (count_bits(lanes) > cost) {
-        triangles = triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], axis, memory_.group_leaf,
-                                          leaf.count());
-        if (cost * count_bits(triangles) <= count_bits(lanes)) {
-          lanes = 0;
-        } else {
-          triangles = 0;
-        }
+        triangles = triangles_in_group<L>(memory_.group_beams[beam], memory_.reaches[beam], beam_axis(list[i]),
+                                          memory_.group_leaf, leaf.count());
+        (cost * count_bits(triangles) <= count_bits(lanes) ? lanes : triangles) = 0;
       }
-      const typename L::Int first_pair = L::Int::splat((beam * 4 + axis) * kTreeWidth);
+      const typename L::Int first_pair = L::Int::splat(beam * kTreeWidth);
       const typename L::Int first_ray = L::Int::splat(list_word(beam / kGroupBeams * kBeamRays, 0));
       for (std::uint32_t base = 0; base < kTreeWidth; base += L::kCount) {
         const std::uint32_t some = triangles >> base & L::kAllBits, others = lanes >> base & L::kAllBits;
@@ -607,15 +598,15 @@ class RayLists {
       GRIDIRON_TRY(shares_origin_ ? test_pairs<true>(records, pair_count) : test_pairs<false>(records, pair_count));
     }
     for (std::uint32_t i = 0; i < ray_count; ++i) {
-      const std::uint32_t ray = (rays[i] & kPlaceBits) >> kPlaceShift;
-      ray_of(memory_.rays, rays[i]).dir_max = memory_.groups[ray / (kRayQuads * kBeamRays)].dir_max[ray / kRayQuads % kBeamRays];
+      const std::uint32_t ray = ((rays[i] & kPlaceBits) >> kPlaceShift) / kRayQuads;
+      memory_.rays[ray].dir_max = memory_.groups[ray / kBeamRays].dir_max[ray % kBeamRays];
     }
     GRIDIRON_TRY(test_rays(records, leaf.count(), rays, ray_count));
     if (hit_count_ == hits) return Status::kOk;
     for (std::uint32_t i = 0; i < met; ++i) {
       const std::uint32_t beam = beam_index(list[i]);
-      memory_.reaches[beam] = group_reach<L>(memory_.groups[beam / kGroupBeams], memory_.group_beams[beam],
-                                              beam_axis(list[i]));
+      memory_.reaches[beam] =
+          group_reach<L>(memory_.groups[beam / kGroupBeams], memory_.group_beams[beam], beam_axis(list[i]));
     }
     return Status::kOk;
   }
@@ -628,7 +619,7 @@ class RayLists {
     work_.add(kShares ? Work::kListSharedGroup : Work::kListTriangleGroup, pair_count);
     for (std::uint32_t i = 0; i < pair_count; ++i) {
       const std::uint32_t pair = pairs[i];
-      const RayGroup& group = memory_.groups[pair / (4 * kGroupBeams * kTreeWidth)];
+      const RayGroup& group = memory_.groups[pair / (kGroupBeams * kTreeWidth)];
       const GroupTriangle<L, kShares> triangle(memory_.triangles, memory_.group_leaf, pair % kTreeWidth);
       bool is_open = triangle.may_be_hit(group, 0);
       if constexpr (L::kCount < kBeamRays) is_open |= triangle.may_be_hit(group, L::kCount);
@@ -636,8 +627,7 @@ class RayLists {
       open_count += is_open ? std::uint32_t{1} : std::uint32_t{0};
     }
     for (std::uint32_t i = 0; i < open_count; ++i) {
-      const std::uint32_t beam = pairs[i] / (4 * kTreeWidth), triangle = pairs[i] % kTreeWidth;
-      const std::uint32_t place = beam / kGroupBeams;
+      const std::uint32_t beam = pairs[i] / kTreeWidth, triangle = pairs[i] % kTreeWidth, place = beam / kGroupBeams;
       const RayGroup& group = memory_.groups[place];
       for (std::uint32_t base = 0; base < kBeamRays; base += L::kCount) {
         const auto own = L::equal(memory_.group_leaf.own_ids[triangle], group.ids + base);

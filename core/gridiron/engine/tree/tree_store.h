@@ -46,7 +46,9 @@ struct TreeCache {
 /// Memory while rays are traced.
 template <class Layout>
 struct alignas(128) TreeRayStore {
-  using Lists = ListMemory<Layout::kBatchRays, Layout::kSpareListWords, Layout::kHasBeams>;
+  /// Whether there is memory for groups, and for terms of rays.
+  static constexpr bool kHasGroups = requires { requires Layout::kHasGroups; };
+  using Lists = ListMemory<Layout::kBatchRays, Layout::kSpareListWords, Layout::kHasBeams, kHasGroups>;
   using Cache = TreeCache<Layout::kTreeSlots, Layout::kLeafTriangles>;
   /// Buffers that can be lent: as many slots each as hold one.
   static constexpr std::uint32_t kBufferSlots = (kIdleBufferBytes + Cache::kSlotBytes - 1) / Cache::kSlotBytes;
