@@ -129,28 +129,33 @@ struct TriangleLanes {
   alignas(64) float normal_error[kMaxTreeLeaf];  ///< likewise, of products with the normal
 };
 
+/// Groups of a batch, and what goes with them. @tparam Beams  of all groups. @tparam Pairs  of a beam and a triangle.
+template <std::uint32_t Groups, std::uint32_t Beams, std::uint32_t Pairs>
+struct GroupMemory {
+  RayGroup groups[Groups];
+  GroupBeam group_beams[Beams];
+  float reaches[Beams];                    ///< of beams: how far they look along their axis, from the corner
+  std::uint32_t lanes[Beams];              ///< of each beam of a list: rays that may meet a leaf, as bits
+  ChildBoxes child_boxes[kMaxTreeDepth];   ///< of the nodes on the way down
+  GroupLeaf group_leaf;                    ///< the leaf that is visited
+  alignas(64) std::uint32_t pairs[Pairs];  ///< of beams and its triangles, and room for lanes behind them
+};
+
 /// Memory for terms of rays, and for groups of them, where there is some.
 template <std::uint32_t Rays, bool HasTerms>
 struct TermsMemory {};
 template <std::uint32_t Rays>
-struct TermsMemory<Rays, true> {
+struct TermsMemory<Rays, true>
+    : GroupMemory<Rays / kBeamRays, kGroupBeams*(Rays / kBeamRays), kGroupBeams * Rays + kBeamRays> {
   RayTerms terms[Rays];
-  RayGroup groups[Rays / kBeamRays];
-  GroupBeam group_beams[kGroupBeams * (Rays / kBeamRays)];
-  float reaches[kGroupBeams * (Rays / kBeamRays)];  ///< of beams: how far they look along their axis, from the corner
-  ChildBoxes child_boxes[kMaxTreeDepth];            ///< of the nodes on the way down
-  GroupLeaf group_leaf;
-  alignas(64) std::uint32_t pairs[kGroupBeams * Rays + kBeamRays];  ///< of beams and a leaf's triangles
-  std::uint32_t
-      lanes[kGroupBeams * (Rays / kBeamRays)];  ///< of each beam of a list: rays that may meet a leaf, as bits
 };
 
 /// @tparam Rays      of a batch: a multiple of 16.
 /// @tparam Spare     words of the arena beyond the least.
 /// @tparam Beams     whether there is memory for beams; with it comes code for rays of one origin.
-/// @tparam HasTerms  whether there is room for terms of rays, and with beams for groups. With them lanes that round a
-/// product and a sum once test
-///                   boxes faster; they change no answer.
+/// @tparam HasTerms  whether there is room for terms of rays, and for groups of them with beams. With it wide lanes
+/// test
+///                   boxes faster; it changes no answer.
 template <std::uint32_t Rays, std::uint32_t Spare, bool Beams, bool HasTerms = false>
 struct alignas(64) ListMemory : TermsMemory<Rays, HasTerms> {
   static constexpr bool kHasTerms = HasTerms;
