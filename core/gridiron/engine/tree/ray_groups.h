@@ -97,7 +97,8 @@ template <class L>
     const Float inverse = Float::load(group.inverse[axes.w] + base);
     const Float away = Float::load(group.origin[axes.w] + base) - Float(group.origin[axes.w][ray]);
     auto is_beside = inverse * Float(group.dir[axes.w][ray]) > Float(0.0f);
-    for (const std::uint32_t axis : {axes.u, axes.v}) {
+    const std::uint32_t others[2] = {axes.u, axes.v};
+    for (const std::uint32_t axis : others) {
       const Float slope(group.dir[axis][ray] * group.inverse[axes.w][ray]);
       const Float turn = Float::load(group.dir[axis] + base) * inverse - slope;
       const Float start = Float::load(group.origin[axis] + base) - Float(group.origin[axis][ray]) - away * slope;
