@@ -8,6 +8,8 @@
 #include <ctime>
 #include <map>
 
+#include "bench/tree_lists.h"
+
 namespace gridiron::bench {
 namespace {
 
@@ -54,7 +56,7 @@ int run(std::span<char*> arguments) {
       if (!parse(arguments[++i], options.rounds) || options.rounds == 0) return usage();
     } else if (argument == "--batch" && has_value) {
       unsigned& rays = options.batch_rays;
-      if (!parse(arguments[++i], rays) || rays == 0 || rays % 16 != 0 || rays > 4096) return usage();
+      if (!parse(arguments[++i], rays) || rays == 0 || rays % 16 != 0 || rays > kMaxBatchRays) return usage();
     } else if (argument == "--scenes" && has_value) {
       options.scenes = arguments[++i];
     } else if (registry().contains(argument)) {

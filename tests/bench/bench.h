@@ -16,7 +16,7 @@ struct BenchOptions {
   std::filesystem::path scenes;  ///< directory of scans; empty: benchmarks that need one say so and pass
   unsigned rounds = 7;           ///< interleaved rounds; the least time of each candidate counts
   bool quick = false;            ///< leave out what takes minutes
-  unsigned batch_rays = 2048;    ///< secondary rays that are traced together: a multiple of 16, at most 4,096
+  unsigned batch_rays = 2048;    ///< secondary rays that are traced together: a multiple of 16, at most 2,048
 };
 
 /// One way of doing a job.

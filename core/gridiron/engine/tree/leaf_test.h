@@ -1,4 +1,5 @@
-// Triangles of a leaf, in lanes, against one ray after another: which it surely hits, which it may hit.
+// Rays against triangles of a leaf, which they surely hit and which they may hit: triangles in lanes for one ray, or
+// rays of a group in lanes for one triangle.
 // Source: own; bounds below. Memory: values. Threads: one core. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -149,7 +150,7 @@ GRIDIRON_OUTLINE void set_up_origin(const float* origin, std::uint32_t count, Tr
   }
 }
 
-/// What floats say of L::kCount triangles and a ray; bit i = triangle i of the lanes.
+/// What floats say of L::kCount triangles and a ray, or as many rays and a triangle; bit i = lane i.
 template <class L>
 struct LeafAnswer {
   using Float = typename L::Float;

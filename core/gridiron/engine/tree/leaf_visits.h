@@ -74,7 +74,8 @@ class LeafVisits {
     return Status::kOk;
   }
 
-  // A leaf's triangles against the rays of groups: one triangle in all lanes, or one ray, whichever are fewer.
+  // A leaf against beams of groups: for each its triangles one by one against all rays, or its rays one by one against
+  // all triangles, whichever are fewer.
   // @param boxes  of the node, the leaf's in place `child`. @param rays  room for the words of all rays of the list.
   [[nodiscard]] GRIDIRON_OUTLINE Status visit_leaf_by_groups(TreeChild leaf, const ChildBoxes& boxes,
                                                              std::uint32_t child, std::uint32_t* list,
@@ -125,6 +126,7 @@ class LeafVisits {
     if (pair_count != 0) {
       GRIDIRON_TRY(shares_origin_ ? test_pairs<true>(records, pair_count) : test_pairs<false>(records, pair_count));
     }
+    // Rays in beams have not been set up: the group has their largest components.
     for (std::uint32_t i = 0; i < ray_count; ++i) {
       const std::uint32_t ray = ((rays[i] & kPlaceBits) >> kPlaceShift) / kRayQuads;
       memory_.rays[ray].dir_max = memory_.groups[ray / kBeamRays].dir_max[ray % kBeamRays];
@@ -138,8 +140,8 @@ class LeafVisits {
     }
     return Status::kOk;
   }
-  // First the pairs of a group and a triangle that wide bounds leave open for some rays, then these: each step without
-  // a branch that depends on a pair.
+  // The first loop leaves the pairs of a beam and a triangle that wide bounds leave open for some ray, without a branch
+  // that depends on a pair. The second one decides these.
   template <bool kShares>
   [[nodiscard]] GRIDIRON_OUTLINE Status test_pairs(const VertexTriangle* records, std::uint32_t pair_count) {
     std::uint32_t* const pairs = memory_.pairs;
@@ -168,7 +170,8 @@ class LeafVisits {
     }
     return Status::kOk;
   }
-  // What a triangle takes in lanes of rays, in what a ray takes in lanes of triangles.
+  // What a triangle takes in lanes of rays, in what a ray takes in lanes of triangles. Of closest hits it takes no
+  // more: single rays find their distances one by one.
   static constexpr std::uint32_t kTriangleCost = 2;
   struct LaneNumbers {
     alignas(64) std::uint32_t of[kTreeWidth];

@@ -39,11 +39,11 @@ struct alignas(16) RayTerms {
 };
 static_assert(sizeof(RayTerms) == sizeof(BatchRay));
 
-/// Lanes that use beams, and code for rays of one origin. One lane needs short code; 16 test all boxes of a node at
-/// once, so a beam saves them less than it costs.
+/// Lanes that use RayBeam where there is no memory for groups, and code for rays of one origin. One lane needs short
+/// code; to 16, which test all boxes of a node at once, beams pay in groups alone.
 template <class L>
 inline constexpr bool kUsesBeams = L::kCount == 4 || L::kCount == 8;
-/// Rays of a beam.
+/// Rays of a group, and the most of a beam.
 inline constexpr std::uint32_t kBeamRays = 16;
 
 /// What bounds neighbouring rays: four planes, and where they are along its axis; ray_beams.h.
@@ -62,8 +62,8 @@ struct BeamMemory {
 template <>
 struct BeamMemory<0> {};
 
-/// Neighbouring rays in lanes, for wide ones: a triangle is tested against all of them at once. Between the planes of
-/// ray_groups.h, boxes are.
+/// 16 neighbouring rays, one a lane: a triangle is tested against all of them at once. Boxes are tested against its
+/// beams.
 struct alignas(64) RayGroup {
   float origin[3][kBeamRays];
   float t[kBeamRays];  ///< as in BatchRay

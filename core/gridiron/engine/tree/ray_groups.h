@@ -1,5 +1,5 @@
-// Groups: the rays of a beam in lanes, for wide lanes. What a beam meets is tested against all its rays at once, so no
-// ray goes down the tree by itself. Source: own; core/TREE.md. Memory: values. Threads: one core.
+// Groups: 16 neighbouring rays, one a lane, that one or two beams bound. Nodes are tested against the beams, leaves
+// against the rays; rays in no beam go as lists. Source: own; core/TREE.md. Memory: values. Threads: one core.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -30,11 +30,14 @@ namespace gridiron {
 // from the corner have one of e; s w one of 2 e with that, and the sum rounds once more. Where the box just touches,
 // its u is |s| w + |o| at most. So kGroupMargin of each slope, and of |U| + |s| W, is enough. What is lost below the
 // least normal float is less than kLeastGroupMargin of the scene.
+//
+// Beside each plane stands a bound: the least or greatest u of all starts and ends, U and U + t d.u, moved outwards by
+// kGroupMargin of |U| + |t d.u|, of which they round by 3 e.
 inline constexpr float kGroupMargin = 0x1p-19f, kLeastGroupMargin = 0x1p-40f;
-/// Beams whose slopes differ by more would meet too much, or whose rays begin farther apart, in the length of the beam,
-/// or the scene's size.
+/// No beam is made if its slopes differ by more than kGroupSpread, or its rays begin farther apart than kGroupWidth of
+/// its length, which counts as the scene's largest |coordinate| at most. Found by trials: wider beams meet too much.
 inline constexpr float kGroupSpread = 0.25f, kGroupWidth = 0.1f;
-/// Rays that a beam is worth its work for.
+/// Rays that a beam is worth its work for. Of fewer, scanned mirrors visit nodes twice.
 inline constexpr std::uint32_t kLeastGroup = 8;
 /// Once so many rays of a batch, and this part of those tried, are in no beam, the others are not tried any more: nodes
 /// would be visited twice, by beams and by rays.
@@ -169,7 +172,7 @@ template <class L>
       low_slope = L::min(slope, low_slope);
       high_slope = L::max(slope, high_slope);
       const Float start = load(group.origin[other], base) - Float(corner);
-      // Far enough for rays without end.
+      // As far as rays without end go: beyond every scene that floats can test.
       const Float far(0x1p100f), way = L::max(L::min(load(group.t, base) * dir, far), -far), end = start + way;
       const Float margin = L::abs(start) * Float(kGroupMargin) + Float(least_margin);
       const Float end_margin = (L::abs(start) + L::abs(way)) * Float(kGroupMargin) + Float(least_margin);
