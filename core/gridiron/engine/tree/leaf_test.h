@@ -295,7 +295,7 @@ struct LeafLanes : LeafSums<L, kBounded> {
     const Float place[3] = {x, y, z};
     if constexpr (kFiltersFirst<L, kBounded, kIsOne>) {
       // The bounds below with three times the largest component in place of the sum.
-      const Float most = L::larger_size(L::larger_size(x, y), z);
+      const Float most = L::larger_size(L::larger_size(x, y), z) + Float(kLeastListSize);
       const Float side = sum(sum(most, wide_edge_error, least_error), q.dir_max, least);
       const Float ahead = L::turn_by(denominator, inner(place, n));
       const Float turn = wide_normal_error * q.dir_max;

@@ -163,6 +163,7 @@ struct alignas(64) ListMemory : TermsMemory<Rays, HasTerms> {
   static constexpr std::uint32_t kArenaWords = list_arena_words(Rays, Spare);
   static constexpr bool kHasBeams = Beams;
   /// All lists of beams fit, at every level, and behind the last the lists of their rays, and what these need below.
+  /// What the lists of up to 16 roots are stepped up by fits in what four lanes need beyond wide ones.
   template <class L>
   static constexpr bool kHoldsBeams = [] {
     constexpr std::uint32_t step = kListStep<L>, parts = 1 + kListParts<L>,

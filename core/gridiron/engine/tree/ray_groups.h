@@ -34,6 +34,9 @@ namespace gridiron {
 // Beside each plane stands a bound: the least or greatest u of all starts and ends, U and U + t d.u, moved outwards by
 // kGroupMargin of |U| + |t d.u|, of which they round by 3 e.
 inline constexpr float kGroupMargin = 0x1p-19f, kLeastGroupMargin = 0x1p-40f;
+/// Added to where a beam ends, once hits have shortened it to what no factor lengthens: kLeastGroupMargin of the
+/// smallest scene that has beams.
+inline constexpr float kLeastReach = kLeastBeamScene * kLeastGroupMargin;
 /// No beam is made if its slopes differ by more than kGroupSpread, or its rays begin farther apart than kGroupWidth of
 /// its length, which counts as the scene's largest |coordinate| at most. Found by trials: wider beams meet too much.
 inline constexpr float kGroupSpread = 0.25f, kGroupWidth = 0.1f;
@@ -124,7 +127,7 @@ template <class L>
     const auto looks = L::mask_from_bits(beam.lanes >> base & L::kAllBits) & (t >= Float(0.0f));
     reach = L::max(L::select(looks, end, Float(-1.0f)), reach);
   }
-  return L::horizontal_max(reach) * (1.0f + kGroupMargin);
+  return L::horizontal_max(reach) * (1.0f + kGroupMargin) + kLeastReach;
 }
 
 /// Makes a beam of some rays of a group. @param lanes  the rays, as bits; not 0.
@@ -385,7 +388,7 @@ class GroupTriangle : LeafSums<L, true> {
       const Float a = L::turn_by(denominator, inner(r, edge)), b = L::turn_by(denominator, inner(r, back));
       const Float least = L::min(L::min(a, b), size - a - b);
       // Three times the largest component in place of the sum.
-      const Float most = L::larger_size(L::larger_size(place[0], place[1]), place[2]);
+      const Float most = L::larger_size(L::larger_size(place[0], place[1]), place[2]) + Float(kLeastListSize);
       const Float ahead = L::turn_by(denominator, inner(place, normal)), error = more_word(kWideNormal);
       turn = error * q.dir_max;
       beside = -sum(sum(most, more_word(kWideEdge), more_word(kLeast)), q.dir_max, least);

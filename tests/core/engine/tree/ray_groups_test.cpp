@@ -208,6 +208,39 @@ TYPED_TEST(RayGroupsTest, TrianglesThatRaysHitStayOpenAndDistancesAreThoseOfRays
   }
 }
 
+// Hits next to the origin shorten a beam to less than a normal float: it still holds them.
+TYPED_TEST(RayGroupsTest, ShortBeamsHoldTheirHits) {
+  if constexpr (TypeParam::kCount > 4) {
+    for (const int mode : kRoundingModes) {
+      for (const bool flush : {false, true}) {
+        const RoundingScope scope(mode, flush);
+        for (std::uint32_t round = 0; round < 1000; ++round) {
+          alignas(64) Group group;
+          for (BatchRay& ray : group.rays) {
+            ray.dir[2] = 0x1.ecbbd8p-15f;
+            ray.t = 1e30f;
+            ray.id = no_hit(kNoTriangle);
+          }
+          const std::uint32_t all = load_group<TypeParam>(group.rays, 1.0f, group.lanes);
+          std::uint32_t octant = 0;
+          const std::uint32_t axis =
+              make_group_beam<TypeParam>(group.lanes, all, 1.0f, group.beam, group.reach, octant);
+          ASSERT_EQ(axis, 2u);
+          alignas(64) GroupLeaf leaf{};
+          leaf.low[2][0] = leaf.high[2][0] = std::ldexp(1.0f + 0x1p-10f * static_cast<float>(round), -140);
+          leaf.low[0][0] = leaf.low[1][0] = -1.0f;
+          leaf.high[0][0] = leaf.high[1][0] = 1.0f;
+          // The least t that reaches the plane.
+          const auto t = static_cast<float>(double{leaf.low[2][0]} / double{group.rays[0].dir[2]});
+          for (float& nearest : group.lanes.t) nearest = std::nextafterf(t, 1.0f);
+          const float reach = group_reach<TypeParam>(group.lanes, group.beam, axis);
+          ASSERT_EQ(triangles_in_group<TypeParam>(group.beam, reach, axis, leaf, 1), 1u) << round;
+        }
+      }
+    }
+  }
+}
+
 // Rays that run apart make beams of their own, of those that lie together.
 TYPED_TEST(RayGroupsTest, RaysBesideOneRunAsItDoes) {
   if constexpr (TypeParam::kCount > 4) {
