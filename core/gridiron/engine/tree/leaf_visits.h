@@ -52,15 +52,15 @@ class LeafVisits {
         for (std::uint32_t i = 0; i < leaf.count(); ++i) memory_.beams.own_ids[i] = no_hit(records[i].triangle_id);
       }
     }
-    return test_rays(records, leaf.count(), list, count);
+    return test_rays(records, leaf, list, count);
   }
   // The triangles in lanes against the rays of a list.
-  [[nodiscard]] GRIDIRON_INLINE Status test_rays(const VertexTriangle* records, std::uint32_t triangle_count,
+  [[nodiscard]] GRIDIRON_INLINE Status test_rays(const VertexTriangle* records, TreeChild leaf,
                                                  const std::uint32_t* list, std::uint32_t count) {
     const Work leaf_kind = share_origin() ? Work::kListSharedLeaf : Work::kListLeaf;
     const Work group_kind = share_origin() ? Work::kListSharedGroup : Work::kListTriangleGroup;
-    for (std::uint32_t base = 0; base < triangle_count; base += L::kCount) {
-      const std::uint32_t rest = triangle_count - base;
+    for (std::uint32_t base = 0; base < leaf.count(); base += L::kCount) {
+      const std::uint32_t rest = leaf.count() - base;
       const std::uint32_t there = rest >= L::kCount ? std::uint32_t{L::kAllBits} : (1u << rest) - 1u;
       work_.add(group_kind, count);
       work_.charge_to(leaf_kind);
@@ -131,7 +131,7 @@ class LeafVisits {
       const std::uint32_t ray = ((rays[i] & kPlaceBits) >> kPlaceShift) / kRayQuads;
       memory_.rays[ray].dir_max = memory_.groups[ray / kBeamRays].dir_max[ray % kBeamRays];
     }
-    GRIDIRON_TRY(test_rays(records, leaf.count(), rays, ray_count));
+    GRIDIRON_TRY(test_rays(records, leaf, rays, ray_count));
     if (hit_count_ == hits) return Status::kOk;
     for (std::uint32_t i = 0; i < met; ++i) {
       const std::uint32_t beam = beam_index(list[i]);

@@ -315,7 +315,8 @@ class RayLists : LeafVisits<L, Memory, Source> {
       }
       work_.charge_to(Work::kListChild);
       const TreeChild child = level.children[level.turn];
-      [[maybe_unused]] const std::uint32_t place = level.place();
+      std::uint32_t place = 0;
+      if constexpr (kHasGroups) place = level.place();
       const std::uint32_t selected = select(level, depth);
       if (selected == 0) continue;
       if (child.is_leaf()) {
