@@ -395,10 +395,7 @@ struct Lanes {
   }
   /// Lanes whose word is `value`. @param words  W words, aligned to 4 * W bytes.
   [[nodiscard]] static GRIDIRON_INLINE Mask equal(std::uint32_t value, const std::uint32_t* words) {
-    return equal(value, Int::load(words));
-  }
-  [[nodiscard]] static GRIDIRON_INLINE Mask equal(std::uint32_t value, Int words) {
-    const IntVector loaded = words.v, wanted = Int::splat(value).v;
+    const IntVector loaded = Int::load(words).v, wanted = Int::splat(value).v;
 #if defined(__AVX512F__)
     if constexpr (W == 16)
       return {_mm512_cmpeq_epi32_mask(__m512i(loaded), __m512i(wanted))};

@@ -153,9 +153,8 @@ struct TermsMemory<Rays, true>
 /// @tparam Rays      of a batch: a multiple of 16.
 /// @tparam Spare     words of the arena beyond the least.
 /// @tparam Beams     whether there is memory for beams; with it comes code for rays of one origin.
-/// @tparam HasTerms  whether there is room for terms of rays, and for groups of them with beams. With it wide lanes
-/// test
-///                   boxes faster; it changes no answer.
+/// @tparam HasTerms  whether there is room for terms of rays, and for groups where there are beams. Wide lanes are
+///                   faster with it; answers are the same.
 template <std::uint32_t Rays, std::uint32_t Spare, bool Beams, bool HasTerms = false>
 struct alignas(64) ListMemory : TermsMemory<Rays, HasTerms> {
   static constexpr bool kHasTerms = HasTerms;
