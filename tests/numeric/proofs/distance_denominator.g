@@ -42,6 +42,10 @@
 %line setup.relative_error_per_t = double{dir_max} * plane.normal_error / magnitude(plane.volume);
 %round normal_error = kDistanceError * (size_x + size_y + size_z)
 %round error = dir_max * normal_error
+# Groups do the same in lanes, where the sum begins with 0, which does not round.
+%source core/gridiron/engine/tree/ray_groups.h
+%line const double normal_error = kDistanceError * (plane.products[0] + plane.products[1] + plane.products[2]);
+%line denominator = denominator + Double::load_floats(group.dir[axis] + first) * normal;
 
 { B_x - A_x in [IN_Z, IN_Z] /\ B_y - A_y in [IN_X, IN_X] /\ B_z - A_z in [IN_Y, IN_Y] /\
   C_x - A_x in [IN_Y, IN_Y] /\ C_y - A_y in [IN_Z, IN_Z] /\ C_z - A_z in [IN_X, IN_X] /\

@@ -45,6 +45,11 @@
 %round numerator_size = size(a_x) * size_x + size(a_y) * size_y + size(a_z) * size_z
 %line plane.volume_error *= kDistanceError;
 %round error = kDistanceError * numerator_size
+# Groups do the same in lanes.
+%source core/gridiron/engine/tree/ray_groups.h
+%line const Double a = Double(double{triangle.v[0][axis]}) - Double::load_floats(group.origin[axis] + first);
+%line volume = volume + a * normal;
+%line volume_size = volume_size + L::abs(a) * Double(plane.products[axis]);
 
 { A_x - o_x in [IN_X, IN_X] /\ A_y - o_y in [IN_Y, IN_Y] /\ A_z - o_z in [IN_Z, IN_Z] /\
   B_x - A_x in [IN_Z, IN_Z] /\ B_y - A_y in [IN_X, IN_X] /\ B_z - A_z in [IN_Y, IN_Y] /\

@@ -17,6 +17,14 @@
 %line const double quotient = plane.volume * inverse;
 %line if (!(size > 0.0 && error < 0x1p-10 * size)) return {0.0, static_cast<double>(kInfinity)};
 %line return {quotient - error, quotient + error};
+# Groups do the same in lanes.
+%source core/gridiron/engine/tree/ray_groups.h
+%line const Double inverse = Double(1.0) / denominator, quotient = volume * inverse, size = L::abs(quotient);
+%line const Double turn = size * (Double::load_floats(group.dir_max + first) * Double(normal_error));
+%line const Double error = (volume_size * Double(kDistanceError) + turn) * L::abs(inverse) + Double(0x1p-49) * size;
+%line const Long known = (Double(0.0) < size) & (error < Double(0x1p-10) * size);
+%line const Long low = ((quotient - error).pattern() + kHalfStep) >> 29;
+%line const Long high = ((quotient + error).pattern() + kHalfStep) >> 29;
 %round inverse = 1 / 1
 %round quotient = 1 * inverse
 %round error = (numerator_part + size(quotient) * (1 * denominator_part)) * size(inverse) + kRounding * size(quotient)

@@ -20,7 +20,7 @@
 %line const Float p = e1[j] * e2[k], q = e1[k] * e2[j];
 %line (p - q).store(lanes.normal[axis] + base);
 %line sizes = sizes + (L::abs(p) + L::abs(q));
-%line (sizes * factor).store(lanes.normal_error + base);
+%line const Float edge_error = edges * factor, normal_error = sizes * factor;
 %round p_x = e1_y * e2_z
 %round p_y = e1_z * e2_x
 %round p_z = e1_x * e2_y
@@ -57,6 +57,11 @@
 # What wide lanes rule out first: the largest component is at least a third of the sum, before it is rounded.
 %line wide_normal_error = normal_error * Float(3.0f);
 %line const auto away = (sum(most, wide_normal_error, ahead) < Float(-2.0f * kLeastAhead)) |
+# Groups do the same, with three times the bound from where the leaf is set up.
+%line (normal_error * Float(3.0f)).store(group_leaf->normal_error + base);
+%source core/gridiron/engine/tree/ray_groups.h
+%line const Float ahead = L::turn_by(denominator, inner(place, normal)), error = more_word(kWideNormal);
+%line before = -sum(most, error, ahead + Float(2.0f * kLeastAhead));
 %round most = a_third + 0
 %round wide_error = most * (normal_error * 3)
 

@@ -36,6 +36,11 @@
 %define wide_low = 1 + turn
 %round wide_ahead = wide_low + 0
 
+# Groups do the same.
+%source core/gridiron/engine/tree/ray_groups.h
+%line behind = (ahead - error) - (size + turn) * q.t * Float(1.0f + 0x1p-20f);
+%line behind = sum(most, -error, ahead) - sum(sum(size, Float(1.0f + 0x1p-20f), turn), q.t, Float(2.0f * kLeastAhead));
+
 { turn in [0, 1] /\ low in [0, 1] /\ high in [1, 1] /\ nearest in [1, 1] /\
   %roundings
   -> most_limit - least_ahead >= 0 /\ most_ahead - least_limit >= 0 /\ nearest - least_t >= 0 /\

@@ -27,10 +27,14 @@
 %round third = 0 - side - 0
 
 %line edges = edges + (L::abs(e1[axis]) + L::abs(e2[axis]));
-%line (edges * factor).store(lanes.edge_error + base);
+%line const Float edge_error = edges * factor, normal_error = sizes * factor;
 %line far = far + L::abs(place[axis]);
 %line (far * Float::load(lanes.edge_error + base) + normal_error).store(lanes.edge_error + base);
 %line const Float most_error = error * q.dir_max;
+# Groups do the same.
+%source core/gridiron/engine/tree/ray_groups.h
+%line const Float a = L::turn_by(denominator, inner(q.dir, first)), b = L::turn_by(denominator, inner(q.dir, second));
+%line beside = -(least + word(kEdgeError) * q.dir_max);
 %round edges = 0 + (0 + size(e_x)) + (0 + size(e_y)) + (0 + size(e_z))
 %round edge_error = edges * kSideErrorFactor
 %round far = 0 + size(x) + size(y) + size(z)

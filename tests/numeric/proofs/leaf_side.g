@@ -33,7 +33,7 @@
 
 %line Float e1[3], e2[3], sizes(kLeastListSize), edges(kLeastListSize);
 %line edges = edges + (L::abs(e1[axis]) + L::abs(e2[axis]));
-%line (edges * factor).store(lanes.edge_error + base);
+%line const Float edge_error = edges * factor, normal_error = sizes * factor;
 %line const Float far = L::abs(x) + L::abs(y) + (L::abs(z) + Float(kLeastListSize));
 %line const Float error = far * q.dir_max * edge_error + turn;
 %line const std::uint32_t candidates = there & ~(least + error < Float(0.0f)).bits();
@@ -45,6 +45,13 @@
 # What wide lanes rule out first: the largest component is at least a third of the sum, before it is rounded.
 %line wide_edge_error = edge_error * Float(3.0f);
 %line const Float side = sum(sum(most, wide_edge_error, least_error), q.dir_max, least);
+# Groups do the same, with three times the bound from where the leaf is set up.
+%line (edge_error * Float(3.0f)).store(group_leaf->edge_error + base);
+%line (normal_error + edge_error * Float(kLeastListSize)).store(group_leaf->least_error + base);
+%source core/gridiron/engine/tree/ray_groups.h
+%line const Float a = L::turn_by(denominator, inner(r, edge)), b = L::turn_by(denominator, inner(r, back));
+%line const Float least = L::min(L::min(a, b), size - a - b);
+%line beside = -sum(sum(most, more_word(kWideEdge), more_word(kLeast)), q.dir_max, least);
 %round most = a_third + 0
 %round wide_error = (most * (edge_error * 3) + 0) * dir_max
 
