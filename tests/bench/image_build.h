@@ -1,4 +1,5 @@
-// The build of the image of configuration `best`, by parts. Memory: owns image and working memory. Threads: one.
+// The build of the image of configuration `best`, by parts. Memory: owns image and working memory. Threads: those of
+// its sharing.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -15,8 +16,9 @@ inline constexpr GridParameters kBestParameters = {.leaf_triangles = kMaxTreeLea
 /// Everything from vertices and indices to a frame that may start: count, build, open; in memory that is there.
 class ImageBuild {
  public:
-  explicit ImageBuild(const MeshView& mesh, const GridParameters& parameters = kBestParameters)
-      : mesh_(mesh), parameters_(parameters) {
+  explicit ImageBuild(const MeshView& mesh, const GridParameters& parameters = kBestParameters,
+                      const WorkSharing& sharing = {})
+      : mesh_(mesh), parameters_(parameters), sharing_(sharing) {
     count();
     if (status_ != Status::kOk) return;
     image_ = test::LineBuffer(static_cast<std::size_t>(need_.image_bytes));
@@ -29,14 +31,14 @@ class ImageBuild {
     open();
   }
   // Its parts, in this order.
-  void count() { take(count_scene_image(mesh_, parameters_, need_)); }
+  void count() { take(count_scene_image(mesh_, parameters_, need_, nullptr, kAnyImageBytes, {}, sharing_)); }
   void build() {
     if (status_ != Status::kOk) return;
-    take(build_scene_image(mesh_, parameters_, need_, image_.bytes(), scratch_.bytes()));
+    take(build_scene_image(mesh_, parameters_, need_, image_.bytes(), scratch_.bytes(), nullptr, sharing_));
   }
   void open() {
     SceneImageError error;
-    if (status_ == Status::kOk) take(open_scene_image(image_.bytes(), view_, error));
+    if (status_ == Status::kOk) take(open_scene_image(image_.bytes(), view_, error, sharing_));
   }
 
   [[nodiscard]] Status status() const { return status_; }
@@ -52,6 +54,7 @@ class ImageBuild {
 
   MeshView mesh_;
   GridParameters parameters_;
+  WorkSharing sharing_;
   GridNeed need_{};
   test::LineBuffer image_, scratch_;
   SceneImageView view_{};

@@ -1,5 +1,9 @@
 // pack: a mesh becomes a scene image. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/sim/host_team.h>
+
 #include <cstdio>
+#include <thread>
 
 #include "base/failure.h"
 #include "base/progress.h"
@@ -69,13 +73,15 @@ void run_command(const PackRequest& request) {
                               .leaf_triangles = store.leaf_triangles};
   const EffectsView of_text = input.text ? input.text->effects.view() : EffectsView{};
   const EffectsView* effects = input.text ? &of_text : nullptr;
-  const GridChoice choice = choose_grid(input, *mesh, scene, limits, effects);
+  sim::HostTeam team(mesh->triangles.size() < kManyTreeTriangles ? 1 : std::thread::hardware_concurrency());
+  const WorkSharing sharing = team.sharing();
+  const GridChoice choice = choose_grid(input, *mesh, scene, limits, effects, sharing);
   require_fit(choice, scene, input);
 
   const AlignedBytes storage =
       name_in_shortage(input.path, "build its scene image", [&] { return allocate_aligned(choice.need.image_bytes); });
   const std::span<std::byte> memory(storage.get(), choice.need.image_bytes);
-  const SceneImageView built = build_image(input, *mesh, choice, memory, effects);
+  const SceneImageView built = build_image(input, *mesh, choice, memory, effects, sharing);
   const std::span<std::byte> image = memory.first(built.header.image_bytes);
 
   AtomicFiles files;

@@ -16,7 +16,8 @@ namespace gridiron {
 /// Reads records from the image and remembers the first error and its place.
 class ImageChecker {
  public:
-  ImageChecker(std::span<const std::byte> image, SceneImageError& error) : image_(image), error_(error) {}
+  ImageChecker(std::span<const std::byte> image, SceneImageError& error, const WorkSharing& sharing)
+      : image_(image), error_(error), sharing_(sharing) {}
 
   /// Precondition: [offset, offset + sizeof(Record)) lies inside the image.
   template <class Record>
@@ -38,7 +39,8 @@ class ImageChecker {
   }
 
   [[nodiscard]] bool is_intact(const ImageHeader& header) const {
-    return header.check_value == scene_image_check_value(image_.first(static_cast<std::size_t>(header.image_bytes)));
+    const std::span<const std::byte> image = image_.first(static_cast<std::size_t>(header.image_bytes));
+    return header.check_value == scene_image_check_value(image, sharing_);
   }
 
   /// The triangle at `offset`, in a format that has corners. Reserved words of a lattice's record are left out.
@@ -59,10 +61,12 @@ class ImageChecker {
   }
 
   [[nodiscard]] std::span<const std::byte> image() const { return image_; }
+  [[nodiscard]] const WorkSharing& sharing() const { return sharing_; }
 
  private:
   std::span<const std::byte> image_;
   SceneImageError& error_;
+  const WorkSharing& sharing_;
 };
 
 /// As GRIDIRON_RULE, for fields that are not all integers.

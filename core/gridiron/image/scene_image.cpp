@@ -3,6 +3,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
 #include <gridiron/build/grid/grid_resolution.h>
+#include <gridiron/build/shared_check_value.h>
 #include <gridiron/image/image_checker.h>
 #include <gridiron/image/scene_image.h>
 
@@ -225,9 +226,10 @@ bool check_gaps(ImageChecker& checker, const ImageHeader& header, const Sections
 
 }  // namespace
 
-Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error) {
+Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error,
+                        const WorkSharing& sharing) {
   error = SceneImageError{};
-  ImageChecker checker(image, error);
+  ImageChecker checker(image, error, sharing);
   ImageHead head;
   const bool is_aligned = reinterpret_cast<std::uintptr_t>(image.data()) % kLineBytes == 0;
   if (!checker.require(is_aligned, 0, "image") || !check_image_head(checker, image.size(), head)) {
@@ -242,7 +244,7 @@ Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, 
   return Status::kOk;
 }
 
-std::uint64_t scene_image_check_value(std::span<const std::byte> image) {
+std::uint64_t scene_image_check_value(std::span<const std::byte> image, const WorkSharing& sharing) {
   constexpr std::size_t kGroup = CheckValue::kGroupBytes;
   static_assert(sizeof(ImageHeader) == kGroup);
   if (image.size() < kGroup) return 0;
@@ -251,7 +253,7 @@ std::uint64_t scene_image_check_value(std::span<const std::byte> image) {
   __builtin_memset(header + offsetof(ImageHeader, check_value), 0, sizeof(ImageHeader::check_value));
   ImageCheckValue check;
   check.add(header);
-  check.add(image.subspan(kGroup));
+  add_shared(check, image.subspan(kGroup), sharing);
   return check.value();
 }
 

@@ -1,8 +1,9 @@
 // Validation of a scene image and access to its parts. The byte layout is in base/records.h and core/SPEC.md.
-// Memory: borrowed. Threads: read-only. SPDX-License-Identifier: Apache-2.0
+// Memory: borrowed. Threads: read-only; those that share the work. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/image_rules.h>
+#include <gridiron/build/work_sharing.h>
 #include <gridiron/platform/status.h>
 
 #include <cstddef>
@@ -57,11 +58,13 @@ struct SceneImageError {
 ///
 /// @param image  kLineBytes-aligned; may be longer than the image, never shorter.
 /// @param view   written on success only.
+/// @param sharing  threads; a grid and the sections of effects are checked by one.
 /// Errors: kBadImage, with the place in `error`. Cost: linear in the image's size.
-[[nodiscard]] Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error);
+[[nodiscard]] Status open_scene_image(std::span<const std::byte> image, SceneImageView& view, SceneImageError& error,
+                                      const WorkSharing& sharing = {});
 
 /// @returns the check value (base/check_value.h) of a whole image, its own field taken as 0.
 /// @param image  a multiple of 64 bytes long.
-[[nodiscard]] std::uint64_t scene_image_check_value(std::span<const std::byte> image);
+[[nodiscard]] std::uint64_t scene_image_check_value(std::span<const std::byte> image, const WorkSharing& sharing = {});
 
 }  // namespace gridiron

@@ -23,6 +23,17 @@ const VertexTriangle& triangle_at(const ImageChecker& checker, const SceneImageV
   return read;
 }
 
+// What triangles are together.
+struct TreeTotals {
+  QuadBox bounds;
+  std::uint64_t id_sum = 0;
+
+  void add(const QuadBox& box) {
+    bounds.low = Lanes<4>::min(box.low, bounds.low);
+    bounds.high = Lanes<4>::max(box.high, bounds.high);
+  }
+};
+
 // Checks the triangles, each of which is to be taken once. With effects a record has the corners of the surface with
 // its id, which says where the record stands. So no two records have one id, and as there are as many as triangles that
 // are kept, each of these is there. Without, its corners are numbers within the bounds and span an area, and if no
@@ -48,24 +59,11 @@ class TreeTriangles {
         if (!take_one(i, same_box)) return false;
       }
     }
-    bounds_.low = Lanes<4>::min(box.low, bounds_.low);
-    bounds_.high = Lanes<4>::max(box.high, bounds_.high);
+    totals_.add(box);
     return true;
   }
 
-  [[nodiscard]] bool check_totals() {
-    const TreeRecord& tree = view_.tree;
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::uint64_t tree_base = view_.tree_offset_bytes;
-      ImageChecker& checker = checker_;
-      GRIDIRON_REQUIRE(bounds_.low.v[axis] == tree.bounds_minimum[axis], tree_base, tree, bounds_minimum);
-      GRIDIRON_REQUIRE(bounds_.high.v[axis] == tree.bounds_maximum[axis], tree_base, tree, bounds_maximum);
-    }
-    const std::uint64_t count = view_.header.triangle_count;
-    const bool are_all =
-        view_.has_effects || view_.header.dropped_triangle_count != 0 || id_sum_ == count * (count - 1) / 2;
-    return checker_.require(are_all, tree.triangles_offset_bytes, "tree_triangle.triangle_id");
-  }
+  [[nodiscard]] const TreeTotals& totals() const { return totals_; }
 
  private:
   // Of an image of vertices without effects: looks at all triangles at once. @returns false if one of them may be
@@ -86,7 +84,7 @@ class TreeTriangles {
     // The sum is a number only if all are; the least and the greatest of some may be.
     const auto good = (box.low >= low_) & (box.high <= high_) & (sum <= sum);
     if (wrong != 0 || (good.bits() & 7u) != 7u) return false;
-    id_sum_ += id_sum;
+    totals_.id_sum += id_sum;
     return true;
   }
 
@@ -99,7 +97,7 @@ class TreeTriangles {
       return false;
     }
     if (!is_reserved_zero(base, triangle)) return false;
-    id_sum_ += id;
+    totals_.id_sum += id;
     const CornerQuads corners = corner_quads(triangle);
     box.add(corners);
     if (view_.has_effects) return is_of_surface(i, base, triangle);
@@ -143,9 +141,21 @@ class TreeTriangles {
   CornerQuad low_, high_;
   bool is_lattice_;
   VertexTriangle read_{};
-  QuadBox bounds_;
-  std::uint64_t id_sum_ = 0;
+  TreeTotals totals_;
 };
+
+bool check_totals(ImageChecker& checker, const SceneImageView& view, const TreeTotals& totals) {
+  const TreeRecord& tree = view.tree;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint64_t tree_base = view.tree_offset_bytes;
+    GRIDIRON_REQUIRE(totals.bounds.low.v[axis] == tree.bounds_minimum[axis], tree_base, tree, bounds_minimum);
+    GRIDIRON_REQUIRE(totals.bounds.high.v[axis] == tree.bounds_maximum[axis], tree_base, tree, bounds_maximum);
+  }
+  const std::uint64_t count = view.header.triangle_count;
+  const bool are_all =
+      view.has_effects || view.header.dropped_triangle_count != 0 || totals.id_sum == count * (count - 1) / 2;
+  return checker.require(are_all, tree.triangles_offset_bytes, "tree_triangle.triangle_id");
+}
 
 // --- Nodes ----------------------------------------------------------------------------------------------------------
 
@@ -192,11 +202,14 @@ bool check_children(ImageChecker& checker, const TreeRecord& tree, std::uint64_t
 
 // Nodes are numbered level by level. So the children of a node must be the next ones that have no parent yet, each
 // node then has one parent, which comes before it, and a level ends where the first child of its first node begins.
-bool check_levels(ImageChecker& checker, std::uint64_t tree_base, const TreeRecord& tree) {
+// @param level_begins  gets the first node of each level, and the end of the last.
+bool check_levels(ImageChecker& checker, std::uint64_t tree_base, const TreeRecord& tree, std::uint32_t* level_begins) {
   std::uint32_t numbered = 1, level_end = 1, depth = 1;
+  level_begins[0] = 0;
   for (std::uint32_t i = 0; i < tree.node_count; ++i) {
     GRIDIRON_REQUIRE(i < numbered, tree_base, tree, node_count);
     if (i == level_end) {
+      if (depth < kMaxTreeDepth) level_begins[depth] = i;
       ++depth;
       level_end = numbered;
     }
@@ -204,6 +217,7 @@ bool check_levels(ImageChecker& checker, std::uint64_t tree_base, const TreeReco
     if (!check_children(checker, tree, base, checker.at<TreeNode>(base), i == 0, numbered)) return false;
   }
   GRIDIRON_REQUIRE(depth == tree.depth, tree_base, tree, depth);
+  level_begins[depth] = tree.node_count;
   return true;
 }
 
@@ -244,8 +258,6 @@ void ask_for_triangles(const ImageChecker& checker, const TreeRecord& tree, cons
 // Compares boxes with those that are built.
 class TreeBoxes {
  public:
-  explicit TreeBoxes(ImageChecker& checker) : checker_(checker) {}
-
   // Of four children of a node. The first that is wrong is the one to blame.
   void compare(std::uint64_t base, const TreeNode& node, std::uint32_t child, const QuadBox* boxes) {
     CornerQuad lows[4], highs[4];
@@ -265,27 +277,35 @@ class TreeBoxes {
     wrong_place_ = base + (is_low ? offsetof(TreeNode, low) : offsetof(TreeNode, high));
     wrong_field_ = is_low ? "node.low" : "node.high";
   }
-  [[nodiscard]] bool check_all() { return checker_.require(wrong_field_ == nullptr, wrong_place_, wrong_field_); }
+  /// 0: none.
+  [[nodiscard]] std::uint64_t wrong_place() const { return wrong_place_; }
+  [[nodiscard]] bool check_all(ImageChecker& checker) const {
+    return checker.require(wrong_field_ == nullptr, wrong_place_, wrong_field_);
+  }
 
  private:
   [[nodiscard]] static GRIDIRON_INLINE bool is_zero(Lanes<4>::Int words) {
     return (words[0] | words[1] | words[2] | words[3]) == 0;
   }
 
-  ImageChecker& checker_;
   std::uint64_t wrong_place_ = 0;
   const char* wrong_field_ = nullptr;
 };
 
-// Every child begins where the one before it ends, so the leaves of any node cover its records in order. A child that
-// is a node has too many records for a leaf. Triangles and boxes are as built, a wrong triangle is named first; from
-// the last node to the first, so that a wrong box is named, not that of its parent, which is made of it.
-bool check_runs_and_contents(ImageChecker& checker, const SceneImageView& view) {
-  const TreeRecord& tree = view.tree;
-  const float margin = tree_margin_of(tree.bounds_minimum, tree.bounds_maximum);
-  TreeTriangles triangles(checker, view);
-  TreeBoxes all_boxes(checker);
-  for (std::uint32_t i = tree.node_count; i-- > 0;) {
+// Checks nodes, the last one first, so that a wrong box is named, not that of its parent, which is made of it. Every
+// child begins where the one before it ends, so the leaves of any node cover its records in order. A child that is a
+// node has too many records for a leaf. Triangles and boxes are as built.
+class NodeCheck {
+ public:
+  NodeCheck(ImageChecker& checker, const SceneImageView& view)
+      : checker_(checker),
+        view_(view),
+        margin_(tree_margin_of(view.tree.bounds_minimum, view.tree.bounds_maximum)),
+        triangles_(checker, view) {}
+
+  [[nodiscard]] bool take(std::uint32_t i) {
+    ImageChecker& checker = checker_;
+    const TreeRecord& tree = view_.tree;
     const std::uint64_t base = place_of_node(tree, i);
     const auto& node = checker.at<TreeNode>(base);
     if (i > 0) ask_for_triangles(checker, tree, checker.at<TreeNode>(base - sizeof(TreeNode)));
@@ -302,15 +322,71 @@ bool check_runs_and_contents(ImageChecker& checker, const SceneImageView& view) 
         continue;
       }
       QuadBox leaf;
-      if (!triangles.take(run.first, run.end, leaf)) return false;
-      boxes[k] = leaf.grown(margin);
+      if (!triangles_.take(run.first, run.end, leaf)) return false;
+      boxes[k] = leaf.grown(margin_);
     }
-    for (std::uint32_t k = 0; k < kTreeWidth; k += 4) all_boxes.compare(base, node, k, boxes + k);
-    if (i != 0) continue;
+    for (std::uint32_t k = 0; k < kTreeWidth; k += 4) boxes_.compare(base, node, k, boxes + k);
+    if (i != 0) return true;
     GRIDIRON_REQUIRE(end == tree.triangle_count, base, node, children);
     GRIDIRON_REQUIRE((node.child_count == 1) == (end <= tree.leaf_triangles), base, node, child_count);
+    return true;
   }
-  return triangles.check_totals() && all_boxes.check_all();
+
+  [[nodiscard]] const TreeTotals& totals() const { return triangles_.totals(); }
+  [[nodiscard]] const TreeBoxes& boxes() const { return boxes_; }
+
+ private:
+  ImageChecker& checker_;
+  const SceneImageView& view_;
+  float margin_;
+  TreeTriangles triangles_;
+  TreeBoxes boxes_;
+};
+
+// Of what is wrong that of the last node is named; a wrong triangle before a wrong box.
+bool check_runs_and_contents(ImageChecker& checker, const SceneImageView& view, const std::uint32_t* level_begins) {
+  const TreeRecord& tree = view.tree;
+  const WorkSharing& sharing = checker.sharing();
+  constexpr std::uint32_t kLeastNodes = 256;  // for a share
+  const std::uint32_t most = tree.node_count / kLeastNodes + 1, count = sharing.count();
+  const std::uint32_t shares = count < most ? count : most;
+  struct Found {
+    SceneImageError error;
+    std::uint32_t wrong_node;  // + 1; 0: none
+    TreeTotals totals;
+    TreeBoxes boxes;
+  };
+  Found found[kMostSharers];
+  // A share is a part of each level, as it is where the tree is built: what a core has written it has at hand.
+  share(sharing, shares, [&](std::uint32_t i) {
+    ImageChecker own(checker.image(), found[i].error, sharing);
+    NodeCheck check(own, view);
+    found[i].wrong_node = 0;
+    for (std::uint32_t level = tree.depth; level-- > 0 && found[i].wrong_node == 0;) {
+      const std::uint32_t begin = level_begins[level];
+      const Share nodes = share_of(level_begins[level + 1] - begin, shares, i);
+      for (auto k = begin + static_cast<std::uint32_t>(nodes.end); k-- > begin + nodes.begin;) {
+        if (check.take(k)) continue;
+        found[i].wrong_node = k + 1;
+        break;
+      }
+    }
+    found[i].totals = check.totals();
+    found[i].boxes = check.boxes();
+  });
+  const Found* last = &found[0];
+  TreeTotals totals;
+  for (std::uint32_t i = 0; i < shares; ++i) {
+    if (found[i].wrong_node > last->wrong_node) last = &found[i];
+    totals.add(found[i].totals.bounds);
+    totals.id_sum += found[i].totals.id_sum;
+  }
+  if (last->wrong_node != 0) return checker.require(false, last->error.byte_offset, last->error.field);
+  if (!check_totals(checker, view, totals)) return false;
+  for (std::uint32_t i = 0; i < shares; ++i) {
+    if (found[i].boxes.wrong_place() > last->boxes.wrong_place()) last = &found[i];
+  }
+  return last->boxes.check_all(checker);
 }
 
 }  // namespace
@@ -346,7 +422,8 @@ bool check_tree(ImageChecker& checker, const SceneImageView& view) {
   const bool has_lattice =
       same_bits(tree.lattice.origin, grid.lattice.origin, 3) && same_bits(&tree.lattice.step, &grid.lattice.step, 1);
   GRIDIRON_REQUIRE(has_lattice, base, tree, lattice);
-  return check_levels(checker, base, tree) && check_runs_and_contents(checker, view);
+  std::uint32_t level_begins[kMaxTreeDepth + 1];
+  return check_levels(checker, base, tree, level_begins) && check_runs_and_contents(checker, view, level_begins);
 }
 
 }  // namespace gridiron

@@ -1,6 +1,9 @@
 // Frame memory. SPDX-License-Identifier: Apache-2.0
 #include "frame_memory.h"
 
+#include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/sim/host_team.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -62,12 +65,14 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
     view = input.text->effects.view();
     effects = &view;
   }
-  const GridChoice choice = choose_grid(input, mesh, plan.scene, limits, effects);
+  sim::HostTeam team(mesh.triangles.size() < kManyTreeTriangles ? 1 : plan.threads);
+  const WorkSharing sharing = team.sharing();
+  const GridChoice choice = choose_grid(input, mesh, plan.scene, limits, effects, sharing);
   require_fit(choice, plan.scene, input);
   const sim::MemoryRegion region = allocate(frame.memory, input.path, choice.need.image_bytes);
   frame.image = plan.builder == Builder::kCores ? build_on_cores(frame.memory, input, mesh, plan, choice, region,
                                                                  frame.vertex_order, effects, frame.cores_build)
-                                                : build_image(input, mesh, choice, region.bytes, effects);
+                                                : build_image(input, mesh, choice, region.bytes, effects, sharing);
   frame.need = choice.need;
   frame.wanted_lambda = choice.wanted_lambda;
   frame.build_seconds = stopwatch.both();

@@ -267,7 +267,7 @@ std::uint64_t image_budget_bytes(const sim::MachineProfile& machine, std::uint32
 }
 
 GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneRequest& request,
-                       const ImageLimits& limits, const EffectsView* effects) {
+                       const ImageLimits& limits, const EffectsView* effects, const WorkSharing& sharing) {
   GridChoice choice;
   const Configuration& configuration = *request.configuration;
   choice.wanted_lambda = request.lambda.value_or(configuration.lambda);
@@ -288,8 +288,9 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
   const Status status = [&] {
     const Stage stage(input.path, choice.parameters.has_grid ? "choosing its grid" : "counting its triangles");
     return request.lambda
-               ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, most_bytes, marks)
-               : fit_scene_image(mesh.view(), choice.parameters, limits.budget_bytes, choice.need, effects, marks);
+               ? count_scene_image(mesh.view(), choice.parameters, choice.need, effects, most_bytes, marks, sharing)
+               : fit_scene_image(mesh.view(), choice.parameters, limits.budget_bytes, choice.need, effects, marks,
+                                 sharing);
   }();
   if (status == Status::kMemoryTooSmall) {
     input_error(input.path, "the scene needs more than " + words_of_bytes(choice.need.image_bytes) + " at lambda " +
@@ -330,18 +331,18 @@ void require_fit(const GridChoice& choice, const SceneRequest& request, const Sc
 }
 
 SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
-                           std::span<std::byte> image, const EffectsView* effects) {
+                           std::span<std::byte> image, const EffectsView* effects, const WorkSharing& sharing) {
   stop_if_interrupted();
   const Stage stage(input.path, "building its scene image");
   std::vector<std::uint64_t> scratch = name_in_shortage(input.path, "build its scene image", [&] {
     return std::vector<std::uint64_t>((choice.need.scratch_bytes + 7) / 8);
   });
   const Status status = build_scene_image(mesh.view(), choice.parameters, choice.need, image,
-                                          std::as_writable_bytes(std::span(scratch)), effects);
+                                          std::as_writable_bytes(std::span(scratch)), effects, sharing);
   if (status != Status::kOk) input_error(input.path, std::string("cannot build the scene image: ") + words_of(status));
   SceneImageView view{};
   SceneImageError error;
-  if (open_scene_image(image, view, error) != Status::kOk) {
+  if (open_scene_image(image, view, error, sharing) != Status::kOk) {
     throw Failure(ExitCode::kCheckFailed, input.path.string() + ": the built image is not valid: field " + error.field +
                                               " at byte " + std::to_string(error.byte_offset));
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gridiron/build/grid/grid_builder.h>
+#include <gridiron/build/work_sharing.h>
 #include <gridiron/image/scene_image.h>
 #include <gridiron/scene/mesh.h>
 
@@ -141,8 +142,10 @@ void require_format(const SceneInput& input, const PackedScene& packed, Triangle
 /// it. If nothing fits, the choice says so and has the least need found.
 /// @param effects  for the image; null: none. Errors: Failure (kBadInput) if there is nothing to trace; kUsage for
 /// options of a grid where there is none.
+/// @param sharing  threads of the host.
 [[nodiscard]] GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneRequest& request,
-                                     const ImageLimits& limits, const EffectsView* effects = nullptr);
+                                     const ImageLimits& limits, const EffectsView* effects = nullptr,
+                                     const WorkSharing& sharing = {});
 
 /// @returns "0.00018", or "0.00018 to 0.0021" if objects have tolerances of their own.
 [[nodiscard]] std::string words_of_tolerance(const SceneRoundness& roundness);
@@ -152,9 +155,10 @@ void require_format(const SceneInput& input, const PackedScene& packed, Triangle
 void require_fit(const GridChoice& choice, const SceneRequest& request, const SceneInput& input);
 
 /// Builds the image of a mesh. @param image  kLineBytes-aligned, choice.need.image_bytes. @param effects  the choice's.
-/// @returns its validated view. Errors: Failure.
+/// @param sharing  threads of the host. @returns its validated view. Errors: Failure.
 [[nodiscard]] SceneImageView build_image(const SceneInput& input, const Mesh& mesh, const GridChoice& choice,
-                                         std::span<std::byte> image, const EffectsView* effects = nullptr);
+                                         std::span<std::byte> image, const EffectsView* effects = nullptr,
+                                         const WorkSharing& sharing = {});
 
 /// Throws Failure (kBadInput) if a packed scene cannot be used as requested: another format, without what the engine
 /// reads, other grid parameters than the command line fixes, or larger than the budget.

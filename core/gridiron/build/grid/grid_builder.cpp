@@ -1,12 +1,13 @@
 // Grid builder: see the header. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/check_value.h>
 #include <gridiron/base/triangle_formats.h>
-#include <gridiron/build/effects/effect_sections.h>
 #include <gridiron/build/build_step.h>
+#include <gridiron/build/effects/effect_sections.h>
 #include <gridiron/build/grid/cell_rows.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/grid/image_layout.h>
 #include <gridiron/build/lattice.h>
+#include <gridiron/build/shared_check_value.h>
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/tree/tree_sections.h>
 #include <gridiron/build/triangle_records.h>
@@ -309,10 +310,10 @@ bool are_bounds_of(const GridRecord& grid, const TreeRecord& tree) {
 // Errors: kBadParameter if the mesh is not the one that was counted.
 template <class Mesh>
 Status write_image(const Mesh& mesh, const GridNeed& need, bool has_grid, std::span<std::byte> scratch,
-                   ImageLayout& layout, std::byte* bytes, ImageCheckValue& check) {
+                   ImageLayout& layout, std::byte* bytes, ImageCheckValue& check, const WorkSharing& sharing) {
   // The directory says how many nodes the tree has, so the tree comes first.
   if (layout.tree.section_count != 0) {
-    GRIDIRON_TRY(write_tree_sections(mesh, scratch, layout.tree, bytes));
+    GRIDIRON_TRY(write_tree_sections(mesh, scratch, layout.tree, bytes, sharing));
     layout.image_bytes = layout.tree.end_bytes;
   }
   write_directory(mesh, need, has_grid, layout, bytes);
@@ -335,7 +336,8 @@ bool is_counted_with(const GridParameters& parameters, const GridRecord& grid) {
 }  // namespace
 
 Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
-                         std::span<std::byte> image, std::span<std::byte> scratch, const EffectsView* effects) {
+                         std::span<std::byte> image, std::span<std::byte> scratch, const EffectsView* effects,
+                         const WorkSharing& sharing) {
   enter_step<GridStep::kBuildOnce>();
   GRIDIRON_TRY(check_parameters(parameters));
   const GridRecord& grid = need.grid;
@@ -359,11 +361,11 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
 
   ImageCheckValue check;
   if (parameters.format != TriangleFormat::kLattice) {
-    GRIDIRON_TRY(write_image(mesh, need, parameters.has_grid, scratch, layout, image.data(), check));
+    GRIDIRON_TRY(write_image(mesh, need, parameters.has_grid, scratch, layout, image.data(), check, sharing));
   } else {
     if (!(grid.lattice.step >= kLeastLatticeStep)) return Status::kBadParameter;
     const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
-    GRIDIRON_TRY(write_image(moved, need, parameters.has_grid, scratch, layout, image.data(), check));
+    GRIDIRON_TRY(write_image(moved, need, parameters.has_grid, scratch, layout, image.data(), check, sharing));
   }
   if (effects != nullptr) {
     write_effect_sections(mesh, *effects, grid, layout.effects, image.data());
@@ -372,7 +374,7 @@ Status build_scene_image(const MeshView& mesh, const GridParameters& parameters,
   if (has_tree) {
     enter_step<TreeStep::kCheckedLine>();
     const std::uint64_t bytes = layout.tree.end_bytes - layout.effects.begin_bytes;
-    check.add({image.data() + layout.effects.begin_bytes, static_cast<std::size_t>(bytes)});
+    add_shared(check, {image.data() + layout.effects.begin_bytes, static_cast<std::size_t>(bytes)}, sharing);
   }
   enter_step<GridStep::kBuildOnce>();
   store(image.data(), offsetof(ImageHeader, check_value), check.value());

@@ -1,9 +1,11 @@
 // Builds the scene image from a mesh, in memory of the caller: grid (macrocells, sorted triangle references), wide
-// tree, effects. Source: Cho, Kim, Han 2012, sections 3.1 and 3.2. Memory: caller's. Threads: one.
+// tree, effects. Source: Cho, Kim, Han 2012, sections 3.1 and 3.2. Memory: caller's. Threads: one, or those that share
+// the work.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/records.h>
+#include <gridiron/build/work_sharing.h>
 #include <gridiron/platform/status.h>
 #include <gridiron/scene/effects.h>
 #include <gridiron/scene/mesh.h>
@@ -63,6 +65,7 @@ inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an 
 /// @param effects           of the scene; null: the image holds no effects, and a tree only if parameters.has_tree.
 /// @param most_image_bytes  ends the count of an image that needs more.
 /// @param marks             working memory, a bit for each macrocell; empty: 16,384 of them on the stack.
+/// @param sharing           threads; a grid is counted by one.
 /// Errors: kBadEffects (check_effects; a light farther from the grid than an eye may be), kBadVertex, kBadIndex,
 /// kBadParameter (also effects or a tree with TriangleFormat::kProjection), kNoTriangles, kTooManyTriangles (with a
 /// tree more than kMaxTreeTriangles too); kMemoryTooSmall: need.image_bytes is then more than most_image_bytes, but
@@ -71,7 +74,7 @@ inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an 
 [[nodiscard]] Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
                                        const EffectsView* effects = nullptr,
                                        std::uint64_t most_image_bytes = kAnyImageBytes,
-                                       std::span<std::uint64_t> marks = {});
+                                       std::span<std::uint64_t> marks = {}, const WorkSharing& sharing = {});
 
 /// Counts as count_scene_image does. A grid gets the greatest lambda of parameters.lambda, its half, its quarter and so
 /// on whose image fits; need.grid.lambda is that lambda. If none fits, `need` describes the last one tried, 1e-6 or a
@@ -81,7 +84,8 @@ inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an 
 /// Cost: one count for each lambda that a bound of its references does not rule out.
 [[nodiscard]] Status fit_scene_image(const MeshView& mesh, const GridParameters& parameters,
                                      std::uint64_t most_image_bytes, GridNeed& need,
-                                     const EffectsView* effects = nullptr, std::span<std::uint64_t> marks = {});
+                                     const EffectsView* effects = nullptr, std::span<std::uint64_t> marks = {},
+                                     const WorkSharing& sharing = {});
 
 /// Writes the scene image. Same bytes for the same input on every host.
 ///
@@ -90,9 +94,10 @@ inline constexpr std::uint64_t kAnyImageBytes = ~std::uint64_t{0};  ///< for an 
 /// @param image    kLineBytes-aligned, at least need.image_bytes. The image takes the first ImageHeader::image_bytes of
 ///                 them; the others, if any, are free again.
 /// @param scratch  8-byte aligned, at least need.scratch_bytes.
+/// @param sharing  threads; a grid and the sections of effects are made by one.
 /// Errors: kMemoryTooSmall (nothing is touched), kBadParameter. Cost: linear.
 [[nodiscard]] Status build_scene_image(const MeshView& mesh, const GridParameters& parameters, const GridNeed& need,
                                        std::span<std::byte> image, std::span<std::byte> scratch,
-                                       const EffectsView* effects = nullptr);
+                                       const EffectsView* effects = nullptr, const WorkSharing& sharing = {});
 
 }  // namespace gridiron

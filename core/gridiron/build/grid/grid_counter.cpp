@@ -80,7 +80,7 @@ Status survey(const Mesh& mesh, KeptTriangles& kept) {
 
 // The same for the tree alone, without the sums.
 template <class Mesh>
-Status survey_for_tree(const Mesh& mesh, KeptTriangles& kept) {
+Status survey_part_for_tree(const Mesh& mesh, KeptTriangles& kept) {
   enter_step<TreeStep::kTriangleSurvey>();
   const auto vertex_count = static_cast<std::int64_t>(mesh.vertices.size());
   QuadBox bounds;
@@ -100,6 +100,33 @@ Status survey_for_tree(const Mesh& mesh, KeptTriangles& kept) {
   }
   kept.minimum = vec3_of(bounds.low);
   kept.maximum = vec3_of(bounds.high);
+  return Status::kOk;
+}
+
+// Shares of a mesh that is large enough.
+template <class Mesh>
+std::uint32_t shares_of(const Mesh& mesh, const WorkSharing& sharing) {
+  return mesh.triangles.size() < kManyTreeTriangles ? std::uint32_t{1} : sharing.count();
+}
+
+template <class Mesh>
+Status survey_for_tree(const Mesh& mesh, const WorkSharing& sharing, KeptTriangles& kept) {
+  Status statuses[kMostSharers];
+  KeptTriangles of[kMostSharers];
+  const std::uint32_t shares = shares_of(mesh, sharing);
+  share(sharing, shares, [&](std::uint32_t i) {
+    const Share part = share_of(mesh.triangles.size(), shares, i);
+    statuses[i] = survey_part_for_tree(Mesh{mesh.vertices, mesh.triangles.subspan(part.begin, part.size())}, of[i]);
+  });
+  for (std::uint32_t i = 0; i < shares; ++i) {
+    GRIDIRON_TRY(statuses[i]);
+    kept.count += of[i].count;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float low = of[i].minimum[axis], high = of[i].maximum[axis];
+      kept.minimum[axis] = low < kept.minimum[axis] ? low : kept.minimum[axis];
+      kept.maximum[axis] = high > kept.maximum[axis] ? high : kept.maximum[axis];
+    }
+  }
   return Status::kOk;
 }
 
@@ -226,6 +253,7 @@ struct Request {
   std::uint64_t most_bytes;
   bool may_reduce;  // halves lambda until the image fits
   std::span<std::uint64_t> marks;
+  const WorkSharing& sharing;
 };
 
 // Bytes of an image of the grid with these numbers of references and blocks.
@@ -352,7 +380,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GridRecord grid{};
   KeptTriangles kept;
   const bool has_grid = request.parameters.has_grid;
-  GRIDIRON_TRY(has_grid ? survey(mesh, kept) : survey_for_tree(mesh, kept));
+  GRIDIRON_TRY(has_grid ? survey(mesh, kept) : survey_for_tree(mesh, request.sharing, kept));
   request.resolved_count = kept.count;
   request.kept_count = kept.count;
   if (request.parameters.format != TriangleFormat::kLattice) return count_mesh(mesh, request, kept, grid, need);
@@ -361,7 +389,7 @@ Status count_geometry(const MeshView& mesh, Request request, GridNeed& need) {
   GRIDIRON_TRY(find_lattice(mesh, grid.lattice));
   const LatticeMesh moved{{mesh.vertices, grid.lattice}, mesh.triangles};
   KeptTriangles moved_kept;
-  GRIDIRON_TRY(has_grid ? survey(moved, moved_kept) : survey_for_tree(moved, moved_kept));
+  GRIDIRON_TRY(has_grid ? survey(moved, moved_kept) : survey_for_tree(moved, request.sharing, moved_kept));
   request.kept_count = moved_kept.count;
   return count_mesh(moved, request, moved_kept, grid, need);
 }
@@ -396,14 +424,16 @@ Status count_within(const MeshView& mesh, Request request, const EffectsView* ef
 }  // namespace
 
 Status count_scene_image(const MeshView& mesh, const GridParameters& parameters, GridNeed& need,
-                         const EffectsView* effects, std::uint64_t most_image_bytes, std::span<std::uint64_t> marks) {
-  const Request request{parameters, nullptr, mesh.triangles.size(), 0, 0, most_image_bytes, false, marks};
+                         const EffectsView* effects, std::uint64_t most_image_bytes, std::span<std::uint64_t> marks,
+                         const WorkSharing& sharing) {
+  const Request request{parameters, nullptr, mesh.triangles.size(), 0, 0, most_image_bytes, false, marks, sharing};
   return count_within(mesh, request, effects, need);
 }
 
 Status fit_scene_image(const MeshView& mesh, const GridParameters& parameters, std::uint64_t most_image_bytes,
-                       GridNeed& need, const EffectsView* effects, std::span<std::uint64_t> marks) {
-  const Request request{parameters, nullptr, mesh.triangles.size(), 0, 0, most_image_bytes, true, marks};
+                       GridNeed& need, const EffectsView* effects, std::span<std::uint64_t> marks,
+                       const WorkSharing& sharing) {
+  const Request request{parameters, nullptr, mesh.triangles.size(), 0, 0, most_image_bytes, true, marks, sharing};
   return count_within(mesh, request, effects, need);
 }
 

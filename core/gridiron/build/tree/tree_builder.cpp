@@ -109,6 +109,13 @@ struct LatticeForm {
   }
 };
 
+std::span<const Vec3> part_of(std::span<const Vec3> vertices, const Share& part) {
+  return vertices.subspan(part.begin, part.size());
+}
+LatticeVertices part_of(const LatticeVertices& vertices, const Share& part) {
+  return {part_of(vertices.vertices, part), vertices.lattice};
+}
+
 bool bound_vertices(std::span<const Vec3> vertices, QuadBox& box) {
   return bound_points(vertices, box);
 }
@@ -129,7 +136,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   using Record = typename Form::Record;
 
   TreeBuilder(const Mesh& mesh, std::uint32_t leaf_triangles, std::span<Record> records, std::span<TreeNode> nodes,
-              std::span<std::byte> scratch, TreeSize& size, TreeOrder order)
+              std::span<std::byte> scratch, TreeSize& size, TreeOrder order, const WorkSharing& sharing)
       : Splits(leaf_triangles),
         mesh_(mesh),
         form_(mesh),
@@ -139,13 +146,15 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
         spare_(keys_ + mesh.triangles.size()),
         counts_(reinterpret_cast<std::uint32_t*>(spare_ + mesh.triangles.size())),
         size_(size),
-        order_(order) {}
+        order_(order),
+        sharing_(sharing),
+        shares_(shares_of(mesh.triangles.size(), records.size_bytes(), sharing)) {}
 
   [[nodiscard]] Status build() {
     size_ = {};
     QuadBox vertices;
     enter_step<TreeStep::kVertexBound>();
-    if (!bound_vertices(mesh_.vertices, vertices)) return Status::kBadVertex;
+    if (!bound_all_vertices(vertices)) return Status::kBadVertex;
     enter_step<TreeStep::kTriangleCode>();
     GRIDIRON_TRY(take_triangles(vertices));
     enter_step<TreeStep::kNodeSplit>();
@@ -164,30 +173,55 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
 
   // --- Triangles --------------------------------------------------------------------------------------------------
 
+  // Each share sorts with counts of its own, all but the first in memory of the records, which are not there yet.
+  static constexpr std::uint32_t kManyKeysCounts = 2u << kManyKeysDigit, kCrowdCounts = 3u << kKeysDigit;
+  [[nodiscard]] std::uint32_t* counts_of(std::uint32_t share, std::uint32_t size) const {
+    return share == 0 ? counts_ : reinterpret_cast<std::uint32_t*>(records_.data()) + (share - 1) * size;
+  }
+  [[nodiscard]] static std::uint32_t room_for(std::size_t record_bytes, std::uint32_t size, std::uint32_t wanted) {
+    const std::size_t room = record_bytes / (size * sizeof(std::uint32_t)) + 1;
+    return wanted < room ? wanted : static_cast<std::uint32_t>(room);
+  }
+  [[nodiscard]] static std::uint32_t shares_of(std::size_t triangle_count, std::size_t record_bytes,
+                                               const WorkSharing& sharing) {
+    return triangle_count < kManyTreeTriangles ? 1 : room_for(record_bytes, kManyKeysCounts, sharing.count());
+  }
+
+  [[nodiscard]] bool bound_all_vertices(QuadBox& box) {
+    QuadBox boxes[kMostSharers];
+    bool are_right[kMostSharers] = {};
+    share(sharing_, shares_, [&](std::uint32_t i) {
+      are_right[i] = bound_vertices(part_of(mesh_.vertices, share_of(mesh_.vertices.size(), shares_, i)), boxes[i]);
+    });
+    bool all_are = true;
+    for (std::uint32_t i = 0; i < shares_; ++i) {
+      all_are = all_are && are_right[i];
+      box.low = Lanes<4>::min(boxes[i].low, box.low);
+      box.high = Lanes<4>::max(boxes[i].high, box.high);
+    }
+    return all_are;
+  }
+
+  // What coding a share of the triangles has found. Its keys lie from the place of its first triangle on.
+  struct CodedShare {
+    Status status;
+    std::uint32_t count;
+    FourBoxes bounds;
+  };
+
   // Sorts the triangles that have an area by their codes, and bounds them.
   [[nodiscard]] Status take_triangles(const QuadBox& vertices) {
     // The least and the greatest middle that a triangle can have.
     const TreeCurve curve({vertices.low + vertices.low, vertices.high + vertices.high});
+    CodedShare coded[kMostSharers];
+    share(sharing_, shares_, [&](std::uint32_t i) { coded[i] = code_share(curve, triangles_of(i)); });
     FourBoxes bounds = FourBoxes::none();
     std::uint32_t count = 0;
-    const auto take = [&](std::uint32_t first, const FourTriangles& triangles, std::uint32_t kept)
-                          GRIDIRON_INLINE_LAMBDA {
-                            FourBoxes boxes = triangles.boxes();
-                            const Lanes<4>::Int codes = curve.codes_of(boxes);
-                            if (kept == 15u) {
-                              TreeKey::store_four(codes, first, spare_ + count);
-                              count += 4;
-                            } else {
-                              for (int lane = 0; lane < 4; ++lane) {
-                                if ((kept >> lane & 1u) == 0) continue;
-                                const auto code = static_cast<std::uint32_t>(codes[lane]);
-                                spare_[count++] = TreeKey::of(code, first + static_cast<std::uint32_t>(lane));
-                              }
-                              boxes.keep(kept);
-                            }
-                            bounds.add(boxes);
-                          };
-    GRIDIRON_TRY(for_each_four(mesh_, take));
+    for (std::uint32_t i = 0; i < shares_; ++i) {
+      GRIDIRON_TRY(coded[i].status);
+      bounds.add(coded[i].bounds);
+      count += coded[i].count;
+    }
     if (count == 0) return Status::kNoTriangles;
     size_.triangle_count = count;
     size_.dropped_triangle_count = static_cast<std::uint32_t>(mesh_.triangles.size()) - count;
@@ -196,7 +230,43 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
       size_.low[axis] = all.low.v[axis];
       size_.high[axis] = all.high.v[axis];
     }
-    if (mesh_.triangles.size() < kManyTreeTriangles) {
+    sort_all(coded);
+    return Status::kOk;
+  }
+  [[nodiscard]] Share triangles_of(std::uint32_t i) const { return share_of(mesh_.triangles.size(), shares_, i, 4); }
+
+  [[nodiscard]] CodedShare code_share(const TreeCurve& curve, const Share& part) const {
+    const auto begin = static_cast<std::uint32_t>(part.begin);
+    TreeKey* const keys = spare_ + begin;
+    FourBoxes bounds = FourBoxes::none();
+    std::uint32_t count = 0;
+    const auto take = [&](std::uint32_t place, const FourTriangles& triangles, std::uint32_t kept)
+                          GRIDIRON_INLINE_LAMBDA {
+                            const std::uint32_t first = begin + place;
+                            FourBoxes boxes = triangles.boxes();
+                            const Lanes<4>::Int codes = curve.codes_of(boxes);
+                            if (kept == 15u) {
+                              TreeKey::store_four(codes, first, keys + count);
+                              count += 4;
+                            } else {
+                              for (int lane = 0; lane < 4; ++lane) {
+                                if ((kept >> lane & 1u) == 0) continue;
+                                const auto code = static_cast<std::uint32_t>(codes[lane]);
+                                keys[count++] = TreeKey::of(code, first + static_cast<std::uint32_t>(lane));
+                              }
+                              boxes.keep(kept);
+                            }
+                            bounds.add(boxes);
+                          };
+    const Status status = for_each_four(Mesh{mesh_.vertices, mesh_.triangles.subspan(part.begin, part.size())}, take);
+    return {status, count, bounds};
+  }
+
+  void sort_all(const CodedShare* coded) {
+    const std::uint32_t count = size_.triangle_count;
+    if (shares_ > 1) {
+      sort_shares(coded);
+    } else if (mesh_.triangles.size() < kManyTreeTriangles) {
       sort_keys<kKeysDigit, kPricedStep<TreeStep::kKeySorted>>(spare_, keys_, count, counts_);
     } else {
       sort_keys<kManyKeysDigit, kPricedStep<TreeStep::kKeyScattered>>(spare_, keys_, count, counts_);
@@ -205,7 +275,60 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
       spare_ = keys_;
       keys_ = sorted;
     }
-    return Status::kOk;
+  }
+
+  // Sorts as sort_keys() does. First keys go to ranges of codes, one for each share, then each share sorts a range.
+  void sort_shares(const CodedShare* coded) {
+    constexpr std::uint32_t kBits = 10, kShift = kTreeCodeBits - kBits, kValues = 1u << kBits;
+    static_assert(kMostSharers * kValues <= kManyKeysCounts);
+    const std::uint32_t all = size_.triangle_count;
+    share(sharing_, shares_, [&](std::uint32_t i) {
+      std::uint32_t* const counts = counts_ + i * kValues;
+      for (std::uint32_t value = 0; value < kValues; ++value) counts[value] = 0;
+      const TreeKey* const keys = spare_ + triangles_of(i).begin;
+      for (std::uint32_t k = 0; k < coded[i].count; ++k) ++counts[keys[k].code() >> kShift];
+    });
+    // Ranges of nearly as many keys; where a key of a share goes: behind those of the shares before it.
+    std::uint8_t range_of[kValues];
+    std::uint32_t begins[kMostSharers + 1], places[kMostSharers][kMostSharers] = {};
+    std::uint32_t before = 0;
+    for (std::uint32_t value = 0; value < kValues; ++value) {
+      const auto range = static_cast<std::uint8_t>(std::uint64_t{before} * shares_ / (std::uint64_t{all} + 1));
+      range_of[value] = range;
+      for (std::uint32_t i = 0; i < shares_; ++i) {
+        places[i][range] += counts_[i * kValues + value];
+        before += counts_[i * kValues + value];
+      }
+    }
+    for (std::uint32_t range = 0, place = 0; range < shares_; ++range) {
+      begins[range] = place;
+      for (std::uint32_t i = 0; i < shares_; ++i) {
+        const std::uint32_t here = places[i][range];
+        places[i][range] = place;
+        place += here;
+      }
+    }
+    begins[shares_] = all;
+    share(sharing_, shares_, [&](std::uint32_t i) {
+      const TreeKey* const keys = spare_ + triangles_of(i).begin;
+      std::uint32_t next[kMostSharers];
+      for (std::uint32_t range = 0; range < shares_; ++range) next[range] = places[i][range];
+      for (std::uint32_t k = 0; k < coded[i].count; ++k) keys_[next[range_of[keys[k].code() >> kShift]]++] = keys[k];
+    });
+    share(sharing_, shares_, [&](std::uint32_t range) {
+      const std::uint32_t begin = begins[range];
+      sort_keys<kManyKeysDigit, kPricedStep<TreeStep::kKeyScattered>>(
+          keys_ + begin, spare_ + begin, begins[range + 1] - begin, counts_of(range, kManyKeysCounts));
+    });
+    // The ends of the keys of each value of the high digit, as one share would have left them.
+    constexpr std::uint32_t kEnds = 1u << (kManyKeysDigit - kBits);
+    std::uint32_t* const ends = counts_ + (1u << kManyKeysDigit);
+    for (std::uint32_t value = 0; value < kValues; ++value) {
+      const std::uint32_t range = range_of[value];
+      const std::uint32_t* const own = counts_of(range, kManyKeysCounts) + (1u << kManyKeysDigit);
+      for (std::uint32_t k = value * kEnds; k < (value + 1) * kEnds; ++k) ends[k] = begins[range] + own[k];
+    }
+    ends_ = ends;
   }
 
   // --- Nodes ------------------------------------------------------------------------------------------------------
@@ -213,26 +336,70 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   // Level by level: nodes that are still to be split lie behind those that are done.
   [[nodiscard]] Status split_all(std::uint32_t count) {
     size_.node_count = 0;
-    GRIDIRON_TRY(append_node({0, count, 0, 0, 0}, 1));
+    GRIDIRON_TRY(append_node(0, count, 1));
+    if (shares_ > 1) return split_levels();
     for (std::uint32_t i = 0; i < size_.node_count; ++i) {
-      if (size_.node_count - i > kNodesAhead) {
-        const TreeNode& later = nodes_[i + kNodesAhead];
-        const std::uint32_t begin = later.children[0].bits, end = later.children[1].bits;
-        ask_for(keys_ + begin, end - begin < kFewKeys ? end - begin : kFewKeys);
-      }
+      ask_ahead(i, size_.node_count);
+      GRIDIRON_TRY(split(nodes_[i]));
+      GRIDIRON_TRY(number_children(nodes_[i]));
+    }
+    return Status::kOk;
+  }
+  // The nodes of a level are split one by one, and then numbered in order.
+  [[nodiscard]] Status split_levels() {
+    for (std::uint32_t begin = 0; begin < size_.node_count;) {
+      const std::uint32_t end = size_.node_count;
+      const NodeShares shares(*this, end - begin);
+      Status statuses[NodeShares::kMost];
+      share(sharing_, shares.count, [&](std::uint32_t i) {
+        TreeBuilder own(*this);
+        own.counts_ = counts_of(i, kCrowdCounts);
+        statuses[i] = own.split_nodes(begin + shares.begin(i), begin + shares.begin(i + 1));
+      });
+      for (std::uint32_t i = 0; i < shares.count; ++i) GRIDIRON_TRY(statuses[i]);
+      for (; begin < end; ++begin) GRIDIRON_TRY(number_children(nodes_[begin]));
+    }
+    return Status::kOk;
+  }
+  [[nodiscard]] Status split_nodes(std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      ask_ahead(i, end);
       GRIDIRON_TRY(split(nodes_[i]));
     }
     return Status::kOk;
   }
+  void ask_ahead(std::uint32_t node, std::uint32_t end) const {
+    if (end - node <= kNodesAhead) return;
+    const TreeNode& later = nodes_[node + kNodesAhead];
+    const std::uint32_t first = later.children[0].bits, last = later.children[1].bits;
+    ask_for(keys_ + first, last - first < kFewKeys ? last - first : kFewKeys);
+  }
+
+  // Shares of the nodes of a level: more than there are sharers, as some nodes take longer than others.
+  struct NodeShares {
+    static constexpr std::uint32_t kTurns = 4, kMost = kMostSharers * kTurns, kLeastNodes = 4;  // of a share
+    std::uint32_t nodes, count;
+
+    NodeShares(const TreeBuilder& builder, std::uint32_t of) : nodes(of), count((of + kLeastNodes - 1) / kLeastNodes) {
+      const std::uint32_t most = room_for(builder.records_.size_bytes(), kCrowdCounts, builder.shares_ * kTurns);
+      count = count < most ? count : most;
+    }
+    [[nodiscard]] std::uint32_t begin(std::uint32_t i) const {
+      return static_cast<std::uint32_t>(std::uint64_t{nodes} * i / count);
+    }
+  };
 
   // Until a node is split it holds its range and its depth.
-  [[nodiscard]] Status append_node(const TreeRange& range, std::uint32_t depth) {
+  [[nodiscard]] Status append_node(std::uint32_t begin, std::uint32_t end, std::uint32_t depth) {
     if (size_.node_count == nodes_.size()) return Status::kMemoryTooSmall;
     TreeNode& node = nodes_[size_.node_count++];
-    node.children[0].bits = range.begin;
-    node.children[1].bits = range.end;
+    node.children[0].bits = begin;
+    node.children[1].bits = end;
     node.children[2].bits = depth;
-    size_.depth = depth > size_.depth ? depth : size_.depth;
+    if (depth > size_.depth) {
+      size_.depth = depth;
+      level_begins_[depth - 1] = size_.node_count - 1;
+    }
     return Status::kOk;
   }
 
@@ -244,14 +411,30 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
     // Boxes are written at last.
     __builtin_memset(node.children, 0, sizeof(TreeNode) - offsetof(TreeNode, children));
     node.child_count = count;
+    bool are_leaves = true;
     for (std::uint32_t i = 0; i < count; ++i) {
       const TreeRange& range = ranges[i];
-      if (range.level < 0) {
-        node.children[i] = TreeChild::leaf(range.begin, range.end - range.begin);
-        continue;
-      }
+      const bool is_leaf = range.level < 0;
+      node.children[i] = is_leaf ? TreeChild::leaf(range.begin, range.end - range.begin) : TreeChild{range.begin};
+      are_leaves = are_leaves && is_leaf;
+    }
+    // Until the children are numbered.
+    node.reserved[0] = are_leaves ? std::uint32_t{0} : depth;
+    node.reserved[1] = end;
+    return Status::kOk;
+  }
+  // Appends those children that are nodes.
+  [[nodiscard]] Status number_children(TreeNode& node) {
+    const std::uint32_t depth = node.reserved[0], end = node.reserved[1];
+    node.reserved[0] = node.reserved[1] = 0;
+    if (depth == 0) return Status::kOk;
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      if (node.children[i].is_leaf()) continue;
+      const std::uint32_t child_begin = node.children[i].bits;
+      // Children cover the range in order.
+      const std::uint32_t child_end = i + 1 < node.child_count ? node.children[i + 1].first() : end;
       node.children[i] = TreeChild::node(size_.node_count);
-      GRIDIRON_TRY(append_node(range, depth + 1));
+      GRIDIRON_TRY(append_node(child_begin, child_end, depth + 1));
     }
     return Status::kOk;
   }
@@ -333,7 +516,21 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   // From the last node to the first, so that children come before their parents. Codes are not needed any more.
   void write_all() {
     margin_ = tree_margin_of(size_.low, size_.high);
-    for (std::uint32_t i = size_.node_count; i-- > 0;) {
+    std::uint32_t end = size_.node_count;
+    if (shares_ > 1) {
+      // Of a level each node is written by itself.
+      for (std::uint32_t level = size_.depth; level-- > 1;) {
+        const std::uint32_t begin = level_begins_[level];
+        const NodeShares shares(*this, end - begin);
+        share(sharing_, shares.count,
+              [&](std::uint32_t i) { write_nodes(begin + shares.begin(i), begin + shares.begin(i + 1)); });
+        end = begin;
+      }
+    }
+    write_nodes(0, end);
+  }
+  void write_nodes(std::uint32_t begin, std::uint32_t end) const {
+    for (std::uint32_t i = end; i-- > begin;) {
       if (order_ == TreeOrder::kForAnyHit) {
         write<true>(i);
       } else {
@@ -429,29 +626,35 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   const std::uint32_t* ends_ = nullptr;  // of the keys of each value of the high digit; null: not known
   TreeSize& size_;
   TreeOrder order_;
+  const WorkSharing& sharing_;
+  std::uint32_t shares_;
+  std::uint32_t level_begins_[kMaxTreeDepth] = {};  // the first node of each level
   float margin_ = 0.0f;
 };
 
 template <class Form, class Mesh>
 Status build(const Mesh& mesh, std::uint32_t leaf_triangles, std::span<typename Form::Record> records,
-             std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size, TreeOrder order) {
+             std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size, TreeOrder order,
+             const WorkSharing& sharing) {
   enter_step<TreeStep::kOnce>();
   if (leaf_triangles == 0 || leaf_triangles > kMaxTreeLeaf) return Status::kBadParameter;
   if (mesh.triangles.size() > kMaxTreeTriangles) return Status::kTooManyTriangles;
   if (scratch.size() < tree_scratch_bytes(mesh.triangles.size())) return Status::kMemoryTooSmall;
-  return TreeBuilder<Mesh, Form>(mesh, leaf_triangles, records, nodes, scratch, size, order).build();
+  return TreeBuilder<Mesh, Form>(mesh, leaf_triangles, records, nodes, scratch, size, order, sharing).build();
 }
 
 }  // namespace
 
 Status build_tree(const MeshView& mesh, std::uint32_t leaf_triangles, std::span<VertexTriangle> records,
-                  std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size, TreeOrder order) {
-  return build<VertexForm>(mesh, leaf_triangles, records, nodes, scratch, size, order);
+                  std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size, TreeOrder order,
+                  const WorkSharing& sharing) {
+  return build<VertexForm>(mesh, leaf_triangles, records, nodes, scratch, size, order, sharing);
 }
 
 Status build_tree(const LatticeMesh& mesh, std::uint32_t leaf_triangles, std::span<LatticeTriangle> records,
-                  std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size, TreeOrder order) {
-  return build<LatticeForm>(mesh, leaf_triangles, records, nodes, scratch, size, order);
+                  std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size, TreeOrder order,
+                  const WorkSharing& sharing) {
+  return build<LatticeForm>(mesh, leaf_triangles, records, nodes, scratch, size, order, sharing);
 }
 
 }  // namespace gridiron

@@ -1,11 +1,12 @@
 // Builds the wide tree of a mesh: triangles sorted along a Z curve, and nodes of 16 children over their runs.
 // Source: own; Morton codes and splits at their highest bits as in Lauterbach and others 2009, "Fast BVH Construction
-// on GPUs". Memory: caller's. Threads: one. SPDX-License-Identifier: Apache-2.0
+// on GPUs". Memory: caller's. Threads: one, or those that share the work. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/tree_records.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/build/tree/tree_size.h>
+#include <gridiron/build/work_sharing.h>
 #include <gridiron/platform/status.h>
 #include <gridiron/scene/mesh.h>
 
@@ -32,13 +33,15 @@ inline constexpr std::uint64_t kManyTreeTriangles = 1u << 15;
 ///                 area.
 /// @param nodes    room for all nodes; most_tree_nodes() is enough.
 /// @param scratch  8-byte aligned, at least tree_scratch_bytes().
+/// @param sharing  threads; meshes below kManyTreeTriangles are not shared.
 /// Errors: kBadParameter, kBadVertex (beyond kCoordinateLimit), kBadIndex, kNoTriangles, kTooManyTriangles
 /// (kMaxTreeTriangles); kMemoryTooSmall: of any of the three, whose contents are then undefined. Cost: linear.
 [[nodiscard]] Status build_tree(const MeshView& mesh, std::uint32_t leaf_triangles, std::span<VertexTriangle> records,
                                 std::span<TreeNode> nodes, std::span<std::byte> scratch, TreeSize& size,
-                                TreeOrder order = TreeOrder::kForAnyHit);
+                                TreeOrder order = TreeOrder::kForAnyHit, const WorkSharing& sharing = {});
 [[nodiscard]] Status build_tree(const LatticeMesh& mesh, std::uint32_t leaf_triangles,
                                 std::span<LatticeTriangle> records, std::span<TreeNode> nodes,
-                                std::span<std::byte> scratch, TreeSize& size, TreeOrder order = TreeOrder::kForAnyHit);
+                                std::span<std::byte> scratch, TreeSize& size, TreeOrder order = TreeOrder::kForAnyHit,
+                                const WorkSharing& sharing = {});
 
 }  // namespace gridiron

@@ -19,7 +19,8 @@ std::uint64_t append(TreeSections& sections, SectionKind kind, std::uint64_t ele
 }
 
 template <class Record, class Mesh>
-Status write(const Mesh& mesh, std::span<std::byte> scratch, TreeSections& sections, std::byte* image) {
+Status write(const Mesh& mesh, std::span<std::byte> scratch, TreeSections& sections, std::byte* image,
+             const WorkSharing& sharing) {
   TreeRecord& record = sections.record;
   SectionEntry& triangles = sections.entries[1];
   SectionEntry& nodes = sections.entries[2];
@@ -28,7 +29,7 @@ Status write(const Mesh& mesh, std::span<std::byte> scratch, TreeSections& secti
       mesh, record.leaf_triangles,
       {reinterpret_cast<Record*>(image + triangles.offset_bytes), std::size_t{record.triangle_count}},
       {reinterpret_cast<TreeNode*>(image + nodes.offset_bytes), static_cast<std::size_t>(nodes.element_count)}, scratch,
-      size, sections.order);
+      size, sections.order, sharing);
   if (status != Status::kOk || size.triangle_count != record.triangle_count) return Status::kBadParameter;
 
   nodes.element_count = size.node_count;
@@ -66,15 +67,15 @@ TreeSections place_tree_sections(TriangleFormat format, std::uint64_t triangle_c
   return sections;
 }
 
-Status write_tree_sections(const MeshView& mesh, std::span<std::byte> scratch, TreeSections& sections,
-                           std::byte* image) {
-  return write<VertexTriangle>(mesh, scratch, sections, image);
+Status write_tree_sections(const MeshView& mesh, std::span<std::byte> scratch, TreeSections& sections, std::byte* image,
+                           const WorkSharing& sharing) {
+  return write<VertexTriangle>(mesh, scratch, sections, image, sharing);
 }
 
 Status write_tree_sections(const LatticeMesh& mesh, std::span<std::byte> scratch, TreeSections& sections,
-                           std::byte* image) {
+                           std::byte* image, const WorkSharing& sharing) {
   sections.record.lattice = mesh.vertices.lattice;
-  return write<LatticeTriangle>(mesh, scratch, sections, image);
+  return write<LatticeTriangle>(mesh, scratch, sections, image, sharing);
 }
 
 void link_surfaces(const TreeSections& sections, const EffectsRecord& effects, std::byte* image) {

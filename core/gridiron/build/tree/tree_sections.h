@@ -46,9 +46,9 @@ struct TreeSections {
 /// Errors: kBadParameter if the mesh is not the one that was counted; the sections' bytes are then undefined.
 /// Cost: linear.
 [[nodiscard]] Status write_tree_sections(const MeshView& mesh, std::span<std::byte> scratch, TreeSections& sections,
-                                         std::byte* image);
+                                         std::byte* image, const WorkSharing& sharing);
 [[nodiscard]] Status write_tree_sections(const LatticeMesh& mesh, std::span<std::byte> scratch, TreeSections& sections,
-                                         std::byte* image);
+                                         std::byte* image, const WorkSharing& sharing);
 
 /// Tells each surface where its triangle stands in the tree, so that a reader can check with no memory of its own that
 /// each triangle is there once. Precondition: both kinds of sections are written. Cost: linear.

@@ -1,0 +1,81 @@
+// Host team. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/sim/host_team.h>
+
+#include <algorithm>
+#include <exception>
+
+namespace gridiron::sim {
+namespace {
+
+// Works follow each other within microseconds, and waking a thread takes tens of them: look a while before sleeping.
+constexpr int kLooks = 10'000;
+
+void wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t from) {
+  for (int i = 0; i < kLooks; ++i) {
+    if (value.load() != from) return;
+  }
+  value.wait(from);
+}
+
+}  // namespace
+
+HostTeam::HostTeam(std::uint32_t threads, const StartThread& start) {
+  const std::uint32_t most = std::min(threads, kMostSharers);
+  threads_.reserve(most);
+  try {
+    for (std::uint32_t i = 1; i < most; ++i) {
+      threads_.push_back(start ? start([this, i] { serve(i); }) : std::thread([this, i] { serve(i); }));
+    }
+  } catch (const std::exception&) {
+    // std::system_error or std::bad_alloc: the host has no more; those that run are enough.
+  }
+}
+
+HostTeam::~HostTeam() {
+  ends_ = true;
+  ++works_;
+  works_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+WorkSharing HostTeam::sharing() {
+  const auto run = [](void* team, std::uint32_t count, WorkSharing::Part part, void* work) {
+    static_cast<HostTeam*>(team)->run(count, part, work);
+  };
+  return {size(), run, this};
+}
+
+void HostTeam::run(std::uint32_t count, WorkSharing::Part part, void* work) {
+  part_ = part;
+  work_ = work;
+  members_ = size();
+  for (std::uint32_t i = 0; i < members_; ++i) {
+    const Share own = share_of(count, members_, i);
+    queues_[i].next = static_cast<std::uint32_t>(own.begin);
+    queues_[i].end = static_cast<std::uint32_t>(own.end);
+  }
+  serving_ = members_ - 1;
+  ++works_;
+  works_.notify_all();
+  take_parts(0);
+  for (std::uint32_t left = serving_; left != 0; left = serving_) wait_for_change(serving_, left);
+}
+
+void HostTeam::take_parts(std::uint32_t member) {
+  for (std::uint32_t k = 0; k < members_; ++k) {
+    Queue& queue = queues_[(member + k) % members_];
+    for (std::uint32_t i = queue.next++; i < queue.end; i = queue.next++) part_(work_, i);
+  }
+}
+
+void HostTeam::serve(std::uint32_t member) {
+  for (std::uint32_t work = 0;; ++work) {
+    wait_for_change(works_, work);
+    if (ends_) return;
+    take_parts(member);
+    --serving_;
+    serving_.notify_one();
+  }
+}
+
+}  // namespace gridiron::sim
