@@ -33,7 +33,7 @@ inline constexpr std::size_t kPassLimitCount = static_cast<std::size_t>(PassLimi
 /// The time of one pass. On each core, start + init + compute + waits + idle + barrier = cycles, without any rounding.
 struct PassTiming {
   std::string_view name;      ///< of the pass
-  std::uint32_t items = 0;    ///< 1: what one core does while the others stand still
+  std::uint32_t items = 0;    ///< 1: what one core does while the others are idle
   double begin_cycles = 0;    ///< from the begin of the list
   double start_cycles = 0;    ///< the master reads the count and starts the cores
   FrameTiming run;            ///< from there until the last core has ended; its tiles are items, its idle_cycles claims

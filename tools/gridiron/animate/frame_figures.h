@@ -23,7 +23,7 @@ namespace gridiron::tool {
 /// The time of one pass, or of what the general core does between two, in cycles of the cores.
 struct PassFigures {
   std::string name;
-  std::uint32_t items = 0;  ///< 1: one core works while the others stand still; 0 of the general core
+  std::uint32_t items = 0;  ///< 1: one core works while the others are idle; 0 of the general core
   double start_cycles = 0, run_cycles = 0, barrier_cycles = 0;
   std::array<double, sim::kPassLimitCount> limits{};  ///< cycles by PassLimit; none of the general core
   std::uint64_t bytes_in = 0, bytes_out = 0;          ///< of all cores, as requested

@@ -167,7 +167,8 @@ Finish add_experiment(CLI::App& app) {
   add_size(app, experiment.size,
            "pictures in pixels (default 1024x1024; dynamic: 512x512; effects: 96x96, at least 16x16)");
   add_count(app, "--largest", experiment.largest_knot, 6'000, 10'000'000,
-            "triangles of the largest mesh of Table 1 of paper (default 1000000), of the largest knot of dynamic");
+            "triangles of the largest mesh of Table 1 of paper (default 1000000), at most of the largest knot of "
+            "dynamic");
   add_quiet(app, experiment.quiet);
   return [asked] {
     ExperimentRequest& request = *asked;

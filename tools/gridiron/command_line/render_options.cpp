@@ -206,8 +206,8 @@ Finish add_animate(CLI::App& app) {
              "what builds the tree of each frame: the cores, whose passes are counted (default with best), or the "
              "general core, which also builds all grids");
   app.add_flag("--keep-vertex-order", animate.keeps_vertex_order,
-               "the cores read vertices in the order of the file; by default they are put in an order of space once, "
-               "when they are loaded");
+               "the cores read vertices in the order of the file; by default in that of three which takes the fewest "
+               "lines of memory: the file's, that of first use, one along a curve through space");
   add_output(app, "--timeline", animate.timeline,
              "what each core did when for the first frame: the passes of its build, and the picture; Chrome trace "
              "format; not with --resume");

@@ -237,6 +237,7 @@ struct BuildPlan {
       top_state, tops, top_results, pieces, piece_results, buckets, level_counts, level_firsts, raw_nodes, piece_checks;
   std::uint64_t end;  ///< of scratch memory
 };
+static_assert(sizeof(BuildPlan) == 352);
 
 /// @returns how many nodes are made of this many triangles at most, from the start of a piece on.
 [[nodiscard]] constexpr std::uint64_t raw_node_place(std::uint64_t triangles, std::uint32_t leaf_triangles) {
