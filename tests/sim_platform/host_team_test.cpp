@@ -16,11 +16,18 @@ namespace {
 
 using sim::HostTeam;
 
+// Calls work(i) for each i < count.
+template <class Work>
+void share(const WorkSharing& sharing, std::uint32_t count, Work&& work) {
+  using Called = std::remove_reference_t<Work>;
+  sharing.run(sharing.team, count, [](void* called, std::uint32_t i) { (*static_cast<Called*>(called))(i); }, &work);
+}
+
 TEST(HostTeam, EachPartIsCalledOnceWorkAfterWork) {
   for (const std::uint32_t threads : {0u, 1u, 2u, 5u, 40u}) {
     HostTeam team(threads);
     const WorkSharing sharing = team.sharing();
-    EXPECT_EQ(sharing.count(), std::min(std::max(threads, 1u), kMostSharers));
+    EXPECT_EQ(sharing.sharers, std::min(std::max(threads, 1u), kMostSharers));
     for (const std::uint32_t count : {0u, 1u, 2u, 3u, 64u, 1000u, 7u}) {
       std::vector<std::atomic<int>> calls(count);
       share(sharing, count, [&](std::uint32_t i) { ++calls[i]; });
@@ -35,7 +42,7 @@ TEST(HostTeam, ThreadsThatCannotBeStartedAreLeftOut) {
       if (started++ >= limit) throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
       return std::thread(std::move(run));
     });
-    EXPECT_EQ(team.sharing().count(), limit + 1);
+    EXPECT_EQ(team.sharing().sharers, limit + 1);
     std::atomic<int> calls = 0;
     share(team.sharing(), 10, [&](std::uint32_t) { ++calls; });
     EXPECT_EQ(calls, 10);

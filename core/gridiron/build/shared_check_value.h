@@ -4,7 +4,7 @@
 #pragma once
 
 #include <gridiron/base/check_value.h>
-#include <gridiron/build/work_sharing.h>
+#include <gridiron/build/shared_parts.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -13,17 +13,19 @@
 namespace gridiron {
 
 /// Does what check.add(bytes) does.
-inline void add_shared(ImageCheckValue& check, std::span<const std::byte> bytes, const WorkSharing& sharing) {
+static inline void add_shared(ImageCheckValue& check, std::span<const std::byte> bytes,
+                              [[maybe_unused]] const WorkSharing& sharing) {
   constexpr std::size_t kPieces = 1024, kPiece = ImageCheckValue::kPieceBytes;
   const std::size_t missing = check.missing_bytes();
-  if (sharing.count() == 1 || bytes.size() < missing + 2 * kPiece) return check.add(bytes);
+  const std::uint32_t shares = shares_for(sharing);
+  if (!kSharesWork || shares == 1 || bytes.size() < missing + 2 * kPiece) return check.add(bytes);
   check.add(bytes.first(missing));
   bytes = bytes.subspan(missing);
   while (bytes.size() >= kPiece) {
     const std::size_t left = bytes.size() / kPiece, count = left < kPieces ? left : kPieces;
     std::uint64_t values[kPieces];
-    share(sharing, sharing.count(), [&](std::uint32_t i) {
-      const Share part = share_of(count, sharing.count(), i);
+    share(sharing, shares, [&](std::uint32_t i) {
+      const Share part = share_of(count, shares, i);
       for (std::size_t piece = part.begin; piece < part.end; ++piece) {
         CheckValue value;
         value.add(bytes.subspan(piece * kPiece, kPiece));

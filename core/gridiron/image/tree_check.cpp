@@ -1,5 +1,6 @@
 // Checks of the wide tree: see image_checker.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/math.h>
+#include <gridiron/build/shared_parts.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/image/image_checker.h>
 
@@ -348,7 +349,7 @@ bool check_runs_and_contents(ImageChecker& checker, const SceneImageView& view, 
   const TreeRecord& tree = view.tree;
   const WorkSharing& sharing = checker.sharing();
   constexpr std::uint32_t kLeastNodes = 256;  // for a share
-  const std::uint32_t most = tree.node_count / kLeastNodes + 1, count = sharing.count();
+  const std::uint32_t most = tree.node_count / kLeastNodes + 1, count = shares_for(sharing);
   const std::uint32_t shares = count < most ? count : most;
   struct Found {
     SceneImageError error;
@@ -356,7 +357,7 @@ bool check_runs_and_contents(ImageChecker& checker, const SceneImageView& view, 
     TreeTotals totals;
     TreeBoxes boxes;
   };
-  Found found[kMostSharers];
+  Found found[kMostShares];
   // A share is a part of each level, as it is where the tree is built: what a core has written it has at hand.
   share(sharing, shares, [&](std::uint32_t i) {
     ImageChecker own(checker.image(), found[i].error, sharing);

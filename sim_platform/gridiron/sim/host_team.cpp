@@ -1,4 +1,5 @@
 // Host team. SPDX-License-Identifier: Apache-2.0
+#include <gridiron/build/shared_parts.h>
 #include <gridiron/sim/host_team.h>
 
 #include <algorithm>

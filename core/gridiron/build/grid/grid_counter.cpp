@@ -7,6 +7,7 @@
 #include <gridiron/build/grid/image_layout.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/build/mesh_quads.h>
+#include <gridiron/build/shared_parts.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/triangle_records.h>
@@ -106,13 +107,13 @@ Status survey_part_for_tree(const Mesh& mesh, KeptTriangles& kept) {
 // Shares of a mesh that is large enough.
 template <class Mesh>
 std::uint32_t shares_of(const Mesh& mesh, const WorkSharing& sharing) {
-  return mesh.triangles.size() < kManyTreeTriangles ? std::uint32_t{1} : sharing.count();
+  return mesh.triangles.size() < kManyTreeTriangles ? std::uint32_t{1} : shares_for(sharing);
 }
 
 template <class Mesh>
 Status survey_for_tree(const Mesh& mesh, const WorkSharing& sharing, KeptTriangles& kept) {
-  Status statuses[kMostSharers];
-  KeptTriangles of[kMostSharers];
+  Status statuses[kMostShares];
+  KeptTriangles of[kMostShares];
   const std::uint32_t shares = shares_of(mesh, sharing);
   share(sharing, shares, [&](std::uint32_t i) {
     const Share part = share_of(mesh.triangles.size(), shares, i);

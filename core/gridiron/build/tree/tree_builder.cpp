@@ -2,6 +2,7 @@
 #include <gridiron/base/lanes.h>
 #include <gridiron/build/build_step.h>
 #include <gridiron/build/mesh_quads.h>
+#include <gridiron/build/shared_parts.h>
 #include <gridiron/build/tree/tree_box.h>
 #include <gridiron/build/tree/tree_builder.h>
 #include <gridiron/build/tree/tree_curve.h>
@@ -184,12 +185,12 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   }
   [[nodiscard]] static std::uint32_t shares_of(std::size_t triangle_count, std::size_t record_bytes,
                                                const WorkSharing& sharing) {
-    return triangle_count < kManyTreeTriangles ? 1 : room_for(record_bytes, kManyKeysCounts, sharing.count());
+    return triangle_count < kManyTreeTriangles ? 1 : room_for(record_bytes, kManyKeysCounts, shares_for(sharing));
   }
 
   [[nodiscard]] bool bound_all_vertices(QuadBox& box) {
-    QuadBox boxes[kMostSharers];
-    bool are_right[kMostSharers] = {};
+    QuadBox boxes[kMostShares];
+    bool are_right[kMostShares] = {};
     share(sharing_, shares_, [&](std::uint32_t i) {
       are_right[i] = bound_vertices(part_of(mesh_.vertices, share_of(mesh_.vertices.size(), shares_, i)), boxes[i]);
     });
@@ -213,7 +214,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   [[nodiscard]] Status take_triangles(const QuadBox& vertices) {
     // The least and the greatest middle that a triangle can have.
     const TreeCurve curve({vertices.low + vertices.low, vertices.high + vertices.high});
-    CodedShare coded[kMostSharers];
+    CodedShare coded[kMostShares];
     share(sharing_, shares_, [&](std::uint32_t i) { coded[i] = code_share(curve, triangles_of(i)); });
     FourBoxes bounds = FourBoxes::none();
     std::uint32_t count = 0;
@@ -264,7 +265,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
 
   void sort_all(const CodedShare* coded) {
     const std::uint32_t count = size_.triangle_count;
-    if (shares_ > 1) {
+    if (kSharesWork && shares_ > 1) {
       sort_shares(coded);
     } else if (mesh_.triangles.size() < kManyTreeTriangles) {
       sort_keys<kKeysDigit, kPricedStep<TreeStep::kKeySorted>>(spare_, keys_, count, counts_);
@@ -280,7 +281,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   // Sorts as sort_keys() does. First keys go to ranges of codes, one for each share, then each share sorts a range.
   void sort_shares(const CodedShare* coded) {
     constexpr std::uint32_t kBits = 10, kShift = kTreeCodeBits - kBits, kValues = 1u << kBits;
-    static_assert(kMostSharers * kValues <= kManyKeysCounts);
+    static_assert(kMostShares * kValues <= kManyKeysCounts);
     const std::uint32_t all = size_.triangle_count;
     share(sharing_, shares_, [&](std::uint32_t i) {
       std::uint32_t* const counts = counts_ + i * kValues;
@@ -290,7 +291,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
     });
     // Ranges of nearly as many keys; where a key of a share goes: behind those of the shares before it.
     std::uint8_t range_of[kValues];
-    std::uint32_t begins[kMostSharers + 1], places[kMostSharers][kMostSharers] = {};
+    std::uint32_t begins[kMostShares + 1], places[kMostShares][kMostShares] = {};
     std::uint32_t before = 0;
     for (std::uint32_t value = 0; value < kValues; ++value) {
       const auto range = static_cast<std::uint8_t>(std::uint64_t{before} * shares_ / (std::uint64_t{all} + 1));
@@ -311,7 +312,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
     begins[shares_] = all;
     share(sharing_, shares_, [&](std::uint32_t i) {
       const TreeKey* const keys = spare_ + triangles_of(i).begin;
-      std::uint32_t next[kMostSharers];
+      std::uint32_t next[kMostShares];
       for (std::uint32_t range = 0; range < shares_; ++range) next[range] = places[i][range];
       for (std::uint32_t k = 0; k < coded[i].count; ++k) keys_[next[range_of[keys[k].code() >> kShift]]++] = keys[k];
     });
@@ -337,7 +338,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   [[nodiscard]] Status split_all(std::uint32_t count) {
     size_.node_count = 0;
     GRIDIRON_TRY(append_node(0, count, 1));
-    if (shares_ > 1) return split_levels();
+    if (kSharesWork && shares_ > 1) return split_levels();
     for (std::uint32_t i = 0; i < size_.node_count; ++i) {
       ask_ahead(i, size_.node_count);
       GRIDIRON_TRY(split(nodes_[i]));
@@ -377,7 +378,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
 
   // Shares of the nodes of a level: more than there are sharers, as some nodes take longer than others.
   struct NodeShares {
-    static constexpr std::uint32_t kTurns = 4, kMost = kMostSharers * kTurns, kLeastNodes = 4;  // of a share
+    static constexpr std::uint32_t kTurns = 4, kMost = kMostShares * kTurns, kLeastNodes = 4;  // of a share
     std::uint32_t nodes, count;
 
     NodeShares(const TreeBuilder& builder, std::uint32_t of) : nodes(of), count((of + kLeastNodes - 1) / kLeastNodes) {
@@ -517,7 +518,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   void write_all() {
     margin_ = tree_margin_of(size_.low, size_.high);
     std::uint32_t end = size_.node_count;
-    if (shares_ > 1) {
+    if (kSharesWork && shares_ > 1) {
       // Of a level each node is written by itself.
       for (std::uint32_t level = size_.depth; level-- > 1;) {
         const std::uint32_t begin = level_begins_[level];
