@@ -42,7 +42,10 @@ class ImageCheckValue {
   /// Appends bytes. Precondition: their number is a multiple of CheckValue::kGroupBytes.
   void add(std::span<const std::byte> bytes);
   /// @returns bytes that are missing to a whole piece; 0: what came before are whole pieces.
-  [[nodiscard]] std::size_t missing_bytes() const { return piece_bytes_ == 0 ? std::size_t{0} : kPieceBytes - piece_bytes_; }
+  [[nodiscard]] std::size_t missing_bytes() const {
+    if (piece_bytes_ == 0) return 0;
+    return kPieceBytes - piece_bytes_;
+  }
   /// Appends a piece by its check value. Precondition: what came before are whole pieces.
   void add_piece(std::uint64_t check_value) { value_ = (value_ ^ check_value) * CheckValue::kPrime; }
 
