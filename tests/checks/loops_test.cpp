@@ -76,6 +76,44 @@ TEST(Loops, ALoopWithoutARowIsNoticed) {
   }
 }
 
+// Where clang gives the place of the macro, several loops would be one without a header.
+TEST(Loops, LoopsInArgumentsOfMacrosAreToldApart) {
+  const ScriptResult result = check_loop(
+      "\n#define TRY(code) code\nTRY({ for (int i = 0; i < n; ++i) --n; while (n > 3) --n; });");
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  EXPECT_NE(result.output.find("> \"ray/a.h\",\"g\",\"for (int i = 0; i < n; ++i)\"\n"
+                               "> \"ray/a.h\",\"g\",\"while (n > 3)\"\n"), std::string::npos) << result.output;
+}
+
+TEST(Loops, ACallOperatorHasTheNameOfItsClass) {
+  const ScriptResult result =
+      check_loop("} struct Named { void operator()(int n) { while (n > 3) --n; } };\nvoid h() {");
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  EXPECT_NE(result.output.find("> \"ray/a.h\",\"Named\",\"while"), std::string::npos) << result.output;
+}
+
+// Of build: its passes, what they include there, and the sources of that.
+TEST(Loops, OfBuildThoseOfThePassesAreTold) {
+  const ScratchDirectory tree;
+  tree.write("core/gridiron/ray/a.h", kSource);
+  tree.write("core/loop_bounds.csv", std::string(kHead) + kRow);
+  const auto write = [&](const std::string& name, const std::string& include, const std::string& function) {
+    tree.write("core/gridiron/build/" + name + ".h", "#pragma once\n" + include + "void " + function + "(int n);\n");
+    tree.write("core/gridiron/build/" + name + ".cpp",
+               "#include <gridiron/build/" + name + ".h>\nvoid " + function + "(int n) { while (n > 3) --n; }\n");
+  };
+  write("passes/pass", "#include <gridiron/build/tree/used.h>\n", "of_pass");
+  write("tree/used", "#include <gridiron/build/deeper.h>\n", "of_used");
+  write("deeper", "", "of_deeper");
+  write("host_only", "#include <gridiron/build/passes/pass.h>\n", "of_host");
+  const ScriptResult result = check_loops(tree.path().string());
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  for (const char* function : {"of_pass", "of_used", "of_deeper"}) {
+    EXPECT_NE(result.output.find(std::string("\"") + function + "\",\"while"), std::string::npos) << result.output;
+  }
+  EXPECT_EQ(result.output.find("of_host"), std::string::npos) << result.output;
+}
+
 TEST(Loops, SourcesThatClangCannotReadAreRefused) {
   const ScriptResult result = check_loop("int;;; nothing");
   EXPECT_EQ(result.exit_code, 1) << result.output;

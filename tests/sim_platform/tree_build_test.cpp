@@ -325,10 +325,11 @@ TYPED_TEST(TreeBuild, OfCrowdsAmongOthers) {
 // So many levels that triangles are split by their number, also in the middle of a crowd.
 TYPED_TEST(TreeBuild, OfDeepTrees) {
   TestMesh nested;
-  float scale = 1;
+  float scale = 1e-20f;
   for (std::uint64_t i = 0; i < 14; ++i, scale *= 2000) {
     nested.append(moved(make_random_soup(i == 0 ? TypeParam::kBucketKeys + 900 : 40, 0.3f, i), scale));
   }
+  ASSERT_EQ(built_by_one(nested, 1, TreeOrder::kForAnyHit).size.depth, kMaxTreeDepth);
   for (const std::uint32_t leaf : {1u, 16u}) expect_same_any_way<TypeParam>(nested, leaf);
   TestMesh geometric = moved(make_random_soup(3000, 1e-8f, 5), 1e-6f);
   for (int i = 0; i < 110; ++i) {

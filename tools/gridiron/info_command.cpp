@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "base/words.h"
@@ -123,18 +124,44 @@ std::uint64_t tiles_across(std::uint32_t pixels, std::uint32_t tile_width) {
   return (std::uint64_t{pixels} + tile_width - 1) / tile_width;
 }
 
-// Every loop on a core without a constant bound, with its bound for this scene, store and picture.
+// What cores make the image's tree from; nothing where there is none that they can make.
+std::optional<BuildInput> build_input_of(const SceneFacts& facts) {
+  const TreeRecord& tree = facts.tree;
+  if (tree.node_count == 0 || tree.triangle_format != static_cast<std::uint32_t>(TriangleFormat::kVertices)) return {};
+  BuildInput input;
+  input.vertex_count = static_cast<std::uint32_t>(facts.vertices);
+  input.triangle_count = static_cast<std::uint32_t>(facts.triangles);
+  input.leaf_triangles = tree.leaf_triangles;
+  input.image = MainAddress{kLineBytes};
+  // Of one that is not built yet: room for the most nodes.
+  const std::uint64_t room = kTreeImageHeadBytes +
+                             round_up<std::uint64_t>(sizeof(VertexTriangle) * facts.triangles, kLineBytes) +
+                             sizeof(TreeNode) * most_tree_nodes(facts.triangles, tree.leaf_triangles);
+  input.image_room = std::max(facts.image_bytes, room);
+  return input;
+}
+
+// Every loop on a core without a constant bound, with its bound for this scene, store and picture; null where none is
+// known but constants.
 Json loops_json(const InfoPlan& plan, const SceneFacts& facts) {
-  const std::uint64_t tiles =
-      tiles_across(plan.size.x, plan.layout.tile_width) * tiles_across(plan.size.y, plan.layout.tile_width);
+  LoopFacts loops;
+  if (facts.worst) {
+    const std::uint64_t tiles =
+        tiles_across(plan.size.x, plan.layout.tile_width) * tiles_across(plan.size.y, plan.layout.tile_width);
+    loops = loop_facts_of(*facts.worst, facts.grid.macro_width, tiles);
+  }
+  if (const std::optional<BuildInput> build = build_input_of(facts)) {
+    loops.add_build(*build, sim::arena_bytes(plan.layout.store));
+  }
+  if (!loops.has_tile && !loops.has_build) return {};
   Json rows = Json::array();
-  for (const LoopRow& row : loop_facts_of(*facts.worst, facts.grid.macro_width, tiles).rows()) {
+  for (const LoopRow& row : loops.rows()) {
     rows.push_back({{"file", std::string(row.file)},
                     {"function", std::string(row.function)},
                     {"loop", std::string(row.loop)},
                     {"kind", std::string(row.kind)},
                     {"bound", std::string(row.bound)},
-                    {"most_turns", row.value}});
+                    {"most_turns", row.value ? Json(*row.value) : Json()}});
   }
   return rows;
 }
@@ -235,7 +262,7 @@ void print_json(const InfoPlan& plan, const SceneFacts& facts) {
   document["worst_tile"] = facts.worst           ? json_of(*facts.worst)
                            : facts.worst_of_view ? json_of(plan, *facts.worst_of_view)
                                                  : Json();
-  document["loops"] = facts.worst ? loops_json(plan, facts) : Json();
+  document["loops"] = loops_json(plan, facts);
   std::printf("%s\n", document.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
 }
 

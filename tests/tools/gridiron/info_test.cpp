@@ -107,7 +107,10 @@ TEST(Info, TellsTheWorstTileOfAView) {
   EXPECT_GT(worst["work"]["shaded_group"], 0);
   EXPECT_FALSE(worst["work"].contains("packet_start"));
   EXPECT_GT(worst["dma"]["get_bytes"], 512);
-  EXPECT_TRUE(info["loops"].is_null());
+  for (const Json& loop : info["loops"]) {
+    const bool is_known = loop["kind"] == "constant" || loop["kind"] == "build";
+    EXPECT_EQ(loop["most_turns"].is_null(), !is_known) << "tiles have no bound for every camera: " << loop;
+  }
 
   const Json simple = info_json(folder, {"a.ply", "--camera", "a.camera", "--size", "200x100"})["worst_tile"];
   EXPECT_GT(simple["work"]["facing_block"], 0);
@@ -149,7 +152,9 @@ TEST(Info, TellsTheWorstTileAndEveryLoop) {
   std::uint64_t found = 0;
   for (const Json& loop : loops) {
     const std::string kind = loop["kind"];
-    EXPECT_TRUE(kind == "constant" || kind == "layout" || kind == "frame" || kind == "scene") << loop;
+    EXPECT_TRUE(kind == "constant" || kind == "layout" || kind == "frame" || kind == "scene" ||
+                kind == "build") << loop;
+    EXPECT_EQ(loop["most_turns"].is_null(), kind == "build") << "an image without a tree: " << loop;
     if (kind == "constant") {
       EXPECT_GT(loop["most_turns"], 0) << loop;
     }
@@ -163,6 +168,28 @@ TEST(Info, TellsTheWorstTileAndEveryLoop) {
     }
   }
   EXPECT_EQ(found, 2u);
+}
+
+// With a tree: the bounds of the passes that build it, for either store.
+TEST(Info, TellsTheLoopsThatBuildATree) {
+  const TemporaryFolder folder("a.ply", make_scene());
+  run(folder, {"pack", "a.ply", "-o", "a.gri", "--configuration", "best"});
+  const auto turns = [&](const Words& words, const char* file, const char* bound) {
+    const Json info = info_json(folder, words);
+    for (const Json& loop : info["loops"]) {
+      if (loop["file"] == file && loop["bound"] == bound) return loop["most_turns"];
+    }
+    return Json();
+  };
+  const int triangles = info_json(folder, {"a.ply"})["scene"]["triangles"];
+  for (const char* input : {"a.ply", "a.gri"}) {
+    EXPECT_EQ(turns({input}, "build/passes/top_pass.h", "build_triangles"), triangles);
+    EXPECT_EQ(turns({input}, "build/passes/subtrees_pass.h", "bucket_triangles"), triangles);
+    EXPECT_EQ(turns({input, "--store", "64"}, "build/passes/subtrees_pass.h", "bucket_triangles"), 432);
+  }
+  EXPECT_TRUE(info_json(folder, {"a.ply", "--accuracy", "compact"})["loops"].is_null()) << "no core builds it";
+  const Json both = info_json(folder, {GRIDIRON_SCENE_FILES "/glass.nff", "--configuration", "grid"});
+  for (const Json& loop : both["loops"]) EXPECT_FALSE(loop["most_turns"].is_null()) << "a grid and a tree: " << loop;
 }
 
 // Another accuracy is another bound, of its own format; and the default is that of the format.
