@@ -300,6 +300,52 @@ TYPED_TEST(TreeBuild, RejectsTooLittleMemory) {
   EXPECT_EQ(with_room(one.size.triangle_count, one.size.node_count - 1).status, Status::kMemoryTooSmall);
 }
 
+TYPED_TEST(TreeBuild, PlansAsManyAsATreeMayHave) {
+  const auto planned = [](std::uint32_t vertices, std::uint32_t triangles) {
+    BuildInput input;
+    input.vertex_count = vertices;
+    input.triangle_count = triangles;
+    BuildPlan plan{};
+    return plan_build<TypeParam>(input, plan);
+  };
+  EXPECT_EQ(planned(kMostVertices, kMaxTreeTriangles), Status::kOk);
+  EXPECT_EQ(planned(kMostVertices + 1, kMaxTreeTriangles), Status::kBadParameter);
+  EXPECT_EQ(planned(kMostVertices, kMaxTreeTriangles + 1), Status::kTooManyTriangles);
+}
+
+// A core that gets two items, and then a reason why there are no more.
+struct StoppedCore {
+  ItemClaim::Kind reason;
+  std::uint32_t claims = 0;
+  [[nodiscard]] PlatformLimits limits() const { return {}; }
+  Status get(void*, MainAddress, std::uint32_t, Tag) { return Status::kOk; }
+  Status put(const void*, MainAddress, std::uint32_t, Tag) { return Status::kOk; }
+  Status wait(TagMask) { return Status::kOk; }
+  ItemClaim claim_item() {
+    const std::uint32_t item = claims++;
+    return item < 2 ? ItemClaim{ItemClaim::Kind::kItem, item} : ItemClaim{reason, 0};
+  }
+};
+
+TEST(TreeBuildItems, EndForTheReasonThatAClaimGives) {
+  const auto ended = [](ItemClaim::Kind reason) {
+    StoppedCore core{reason};
+    WorkCounters work{};
+    BuildTransfers<StoppedCore> transfers(core, work);
+    std::uint32_t items = 0;
+    const Status status = for_each_item(transfers, 5, [&](std::uint32_t) {
+      ++items;
+      return Status::kOk;
+    });
+    EXPECT_EQ(items, 2u);
+    EXPECT_EQ(core.claims, 3u);
+    return status;
+  };
+  EXPECT_EQ(ended(ItemClaim::Kind::kNone), Status::kOk);
+  EXPECT_EQ(ended(ItemClaim::Kind::kAborted), Status::kAborted);
+  EXPECT_EQ(ended(ItemClaim::Kind::kDeadline), Status::kDeadline);
+}
+
 // One code of more triangles than a store holds: they are gone through several times.
 TYPED_TEST(TreeBuild, OfCrowds) {
   expect_same_any_way<TypeParam>(equal_triangles(3000), 16);
@@ -339,9 +385,11 @@ TYPED_TEST(TreeBuild, OfDeepTrees) {
   for (const std::uint32_t leaf : {1u, 2u}) expect_same_any_way<TypeParam>(geometric, leaf);
 }
 
-// More triangles of one code than fit below depth 8, so that a node there cuts the crowd by number.
+// A node at depth 8 has a few triangles of one code more than fit below it, so it cuts the crowd by number. If they are
+// two, most of its sixteenths are coded again; if they are 104, all are cut too, and most parts of these coded again.
 TYPED_TEST(TreeBuild, OfALargeCrowdThatIsCutByNumber) {
-  constexpr std::uint32_t kMany = 65536 + 4000;
+  constexpr std::uint32_t kMore = TypeParam::kPieceKeys < 4096 ? 2 : 104;
+  constexpr std::uint32_t kMany = 65536 + kMore - 200;  // the node has 200 others
   TestMesh nested = moved(make_random_soup(kMany, 0.3f, 1), 1e-20f);
   float scale = 1e-20f;
   for (std::uint64_t i = 0; i < 12; ++i) {
@@ -351,7 +399,6 @@ TYPED_TEST(TreeBuild, OfALargeCrowdThatIsCutByNumber) {
   const Built one = built_by_one(nested, 1, TreeOrder::kForAnyHit);
   ASSERT_EQ(one.status, Status::kOk);
   ASSERT_EQ(one.size.depth, kMaxTreeDepth);
-  // Above depth 8 a node has more triangles than it could have without the cut.
   expect_same(built_by_cores<TypeParam>(nested, 1, TreeOrder::kForAnyHit, {.cores = 6}), one);
 }
 
@@ -471,8 +518,10 @@ TYPED_TEST(TreeBuild, InstrumentedCodeStaysInItsStore) {
 TYPED_TEST(TreeBuild, WholeImageIsThatOfPrepare) {
   TestMesh some_flat = make_torus(50, 60, 3, 1);
   some_flat.append(flat(7));
+  TestMesh below_zero = make_height_field(20, 0.2f, 3);
+  for (Vec3& vertex : below_zero.vertices) vertex.y = -0.0f;
   for (const TestMesh& mesh : {make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), some_flat, make_random_soup(5003, 1, 4),
-                               moved(make_height_field(40, 0.2f, 3), 1, Vec3(-7, 0, 0))}) {
+                               moved(make_height_field(40, 0.2f, 3), 1, Vec3(-7, 0, 0)), below_zero}) {
     for (const std::uint32_t leaf : {3u, 16u}) {
       const std::vector<std::byte> one = image_by_one(mesh, leaf);
       for (std::uint32_t cores = 1; cores <= 16; cores += cores < 3 ? 1 : 13) {
@@ -487,11 +536,28 @@ TYPED_TEST(TreeBuild, WholeImageIsThatOfPrepare) {
   }
 }
 
-// So many runs that each has few samples.
+// One check value of all pieces; an image that has one keeps it.
+TEST(TreeBuildImage, GetsOneCheckValue) {
+  ImageHeader header{};
+  header.image_bytes = 2 * ImageCheckValue::kPieceBytes + kLineBytes;
+  const PieceCheck checks[] = {{17, 0}, {4, 0}, {1234, 0}, {5, 0}};
+  EXPECT_EQ(finish_built_image(std::span(checks).first(2), header), Status::kBadImage);
+  EXPECT_EQ(header.check_value, 0u);
+  ASSERT_EQ(finish_built_image(checks, header), Status::kOk);
+  ImageCheckValue expected;
+  for (const PieceCheck& check : std::span(checks).first(3)) expected.add_piece(check.value);
+  EXPECT_EQ(header.check_value, expected.value());
+  EXPECT_EQ(finish_built_image(checks, header), Status::kBadImage);
+  EXPECT_EQ(header.check_value, expected.value());
+}
+
+// So many runs that each has few samples, and so many buckets that their codes and cuts leave in parts,
+// each when it is waited for.
 TEST(TreeBuildRuns, AreManyInASmallStore) {
   const TestMesh mesh = make_height_field(260, 0.2f, 3);
   ASSERT_GT(mesh.triangles.size(), 128u * BuildLayout64K::kRunTriangles);
-  expect_same(built_by_cores<BuildLayout64K>(mesh, 16, TreeOrder::kForAnyHit, {.cores = 2}),
+  expect_same(built_by_cores<BuildLayout64K>(mesh, 16, TreeOrder::kForAnyHit,
+                                             {.cores = 2, .completion = Completion::kLate, .queue_depth = 250}),
               built_by_one(mesh, 16, TreeOrder::kForAnyHit));
 }
 

@@ -377,6 +377,73 @@ TEST(TreeBuilder, NodesAreSplitAtTheHighestBits) {
   }
 }
 
+struct SplitPart {
+  std::uint32_t begin, end, group;
+};
+
+// The parts of a node by the rule of tree_splits.h, written again. None if it meets triangles of one code.
+template <class CodeAt>
+std::vector<SplitPart> parts_of(const CodeAt& code_at, std::uint32_t begin, std::uint32_t end, bool is_root,
+                                std::uint32_t leaf_triangles) {
+  std::vector<SplitPart> parts = {{begin, end, 0}};
+  std::uint32_t group_sizes[4] = {1, 1, 1, 1};
+  while (parts.size() < kTreeWidth) {
+    std::size_t best = parts.size();
+    std::pair<int, std::uint32_t> most;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const std::uint32_t size = parts[i].end - parts[i].begin;
+      if (size <= leaf_triangles) continue;
+      const auto level = static_cast<int>(std::bit_width(code_at(parts[i].begin) ^ code_at(parts[i].end - 1)));
+      std::pair<int, std::uint32_t> weight(5 * level + 2 * static_cast<int>(std::bit_width(size)), size);
+      if (group_sizes[parts[i].group] >= 4) weight.first -= is_root ? 3 : 1000;
+      if (best < parts.size() && weight <= most) continue;
+      best = i;
+      most = weight;
+    }
+    if (best == parts.size()) break;
+    SplitPart& part = parts[best];
+    const std::uint32_t change = code_at(part.begin) ^ code_at(part.end - 1);
+    if (change == 0) return {};
+    SplitPart behind = part;
+    while ((code_at(behind.begin) & std::bit_floor(change)) == 0) ++behind.begin;
+    part.end = behind.begin;
+    parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(best) + 1, behind);
+    if (parts.size() > 4) ++group_sizes[behind.group];
+    for (std::uint32_t i = 0; i < 4 && parts.size() == 4; ++i) parts[i].group = i;
+  }
+  return parts;
+}
+
+TEST(TreeBuilder, TheHeaviestPartIsSplitFirstAndGroupsAreOfFour) {
+  const TestMesh soup = make_random_soup(5'000, 0.01f, 3);
+  const TestMesh uneven = joined(joined(soup, moved(soup, 0.03f, Vec3(0.4f))), make_height_field(30, 0.2f, 3));
+  for (const TestMesh& mesh : {soup, uneven}) {
+    for (const std::uint32_t leaf : {2u, 8u}) {
+      const std::vector<std::uint32_t> codes = codes_of(mesh);
+      const Tree<VertexTriangle> tree = built<VertexTriangle>(mesh.view(), leaf);
+      const auto code_at = [&](std::size_t i) { return codes[tree.records[i].triangle_id]; };
+      std::vector<std::uint32_t> firsts(tree.nodes.size()), ends(tree.nodes.size());
+      std::size_t compared = 0;
+      for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+        const TreeNode& node = tree.nodes[i];
+        std::vector<std::uint32_t> child_ends;
+        for (std::uint32_t k = 0; k < node.child_count; ++k) {
+          const TreeChild c = node.children[k];
+          if (k == 0) firsts[i] = c.is_leaf() ? c.first() : firsts[c.node_index()];
+          child_ends.push_back(c.is_leaf() ? c.first() + c.count() : ends[c.node_index()]);
+        }
+        ends[i] = child_ends.back();
+        const std::vector<SplitPart> parts = parts_of(code_at, firsts[i], ends[i], i == 0, leaf);
+        if (parts.empty()) continue;
+        ASSERT_EQ(parts.size(), child_ends.size()) << "node " << i;
+        for (std::size_t k = 0; k < parts.size(); ++k) ASSERT_EQ(parts[k].end, child_ends[k]) << "node " << i;
+        ++compared;
+      }
+      EXPECT_GT(compared, tree.nodes.size() / 2);
+    }
+  }
+}
+
 TEST(TreeBuilder, OrderByNumberChangesNothingElse) {
   const TestMesh mesh = make_random_soup(2'000, 0.1f, 4);
   const Tree<VertexTriangle> tree = built<VertexTriangle>(mesh.view(), 8);
