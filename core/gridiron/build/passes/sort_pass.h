@@ -416,13 +416,12 @@ class BucketSorter {
     return transfers_.wait(kSampleTag);
   }
 
-  // Codes those crowds of a bucket again that have not been yet, where they lie.
+  // Codes the crowds of a bucket again, where they lie.
   [[nodiscard]] GRIDIRON_RARE Status code_crowds_far(std::uint32_t first, std::uint32_t count) {
     FarOrder<Layout, P> order(transfers_, store_.lone.far, plan_, store_.lone.keys, Layout::kLoneKeys, store_.counts);
     std::uint32_t begin = first, at = first, code = 0;
-    bool is_coded = false;
     const auto end_crowd = [&]() -> Status {
-      if (at - begin <= kFewTreeTriangles || is_coded) return Status::kOk;
+      if (at - begin <= kFewTreeTriangles) return Status::kOk;
       return order.code_crowd(begin, at - begin);
     };
     for (; at < first + count; ++at) {
@@ -437,7 +436,6 @@ class BucketSorter {
       if (key.code == code && at > first) continue;
       GRIDIRON_TRY(end_crowd());
       code = key.code;
-      is_coded = (key.again & kCrowdEnd) != 0;
       begin = at;
     }
     return end_crowd();
