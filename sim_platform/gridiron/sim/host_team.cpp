@@ -8,12 +8,14 @@
 namespace gridiron::sim {
 namespace {
 
-// Works follow each other within microseconds, and waking a thread takes tens of them: look a while before sleeping.
-constexpr int kLooks = 10'000;
+// Works follow each other within microseconds, and waking a thread takes tens of them: look a while before sleeping,
+// and let others run meanwhile.
+constexpr int kLooks = 5'000;
 
 void wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t from) {
   for (int i = 0; i < kLooks; ++i) {
     if (value.load() != from) return;
+    std::this_thread::yield();
   }
   value.wait(from);
 }
