@@ -291,7 +291,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
     });
     // Ranges of nearly as many keys; where a key of a share goes: behind those of the shares before it.
     std::uint8_t range_of[kValues];
-    std::uint32_t begins[kMostShares + 1], places[kMostShares][kMostShares] = {};
+    std::uint32_t begins[kMostSharers + 1], places[kMostSharers][kMostSharers] = {};
     std::uint32_t before = 0;
     for (std::uint32_t value = 0; value < kValues; ++value) {
       const auto range = static_cast<std::uint8_t>(std::uint64_t{before} * shares_ / (std::uint64_t{all} + 1));
@@ -312,7 +312,7 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
     begins[shares_] = all;
     share(sharing_, shares_, [&](std::uint32_t i) {
       const TreeKey* const keys = spare_ + triangles_of(i).begin;
-      std::uint32_t next[kMostShares];
+      std::uint32_t next[kMostSharers];
       for (std::uint32_t range = 0; range < shares_; ++range) next[range] = places[i][range];
       for (std::uint32_t k = 0; k < coded[i].count; ++k) keys_[next[range_of[keys[k].code() >> kShift]]++] = keys[k];
     });
