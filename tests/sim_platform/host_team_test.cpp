@@ -125,14 +125,21 @@ TEST(SharedBuild, ImagesAreThoseOfOneThread) {
   }
 }
 
-// Records, in whose memory shares count, have no room for many.
+// Shares count in the memory of the records: these have just no room for two shares, just room, and more.
 TEST(SharedBuild, OfManyTrianglesFewMayHaveAnArea) {
-  TestMesh mesh = large_mesh();
-  for (std::uint32_t i = 0; i < 33'990; ++i) mesh.triangles[i].z = mesh.triangles[i].x;
-  mesh.triangles.resize(34'000 + 2'000);
-  const Image alone = built(mesh.view(), TriangleFormat::kVertices, {}, std::byte{0xA5});
-  ASSERT_EQ(alone.status, Status::kOk);
-  EXPECT_TRUE(are_same(built(mesh.view(), TriangleFormat::kVertices, all_at_once(16), std::byte{0x5A}), alone));
+  constexpr std::uint32_t kCounts = 262'144;  // bytes
+  for (const TriangleFormat format : {TriangleFormat::kVertices, TriangleFormat::kLattice}) {
+    const auto bytes = static_cast<std::uint32_t>(format == TriangleFormat::kVertices ? sizeof(VertexTriangle)
+                                                                                      : sizeof(LatticeTriangle));
+    for (const std::uint32_t kept : {2'000u, kCounts / bytes, kCounts / bytes + 1, 2 * kCounts / bytes + 1}) {
+      TestMesh mesh = moved(make_random_soup(34'000, 0.1f, 3), 50.0f);
+      for (std::uint32_t i = kept; i < mesh.triangles.size(); ++i) mesh.triangles[i].z = mesh.triangles[i].x;
+      const Image alone = built(mesh.view(), format, {}, std::byte{0xA5});
+      ASSERT_EQ(alone.status, Status::kOk);
+      ASSERT_EQ(mesh.triangles.size() - alone.need.dropped_triangle_count, kept);
+      EXPECT_TRUE(are_same(built(mesh.view(), format, all_at_once(16), std::byte{0x5A}), alone)) << kept;
+    }
+  }
 }
 
 TEST(SharedBuild, ErrorsAreThoseOfOneThread) {

@@ -18,7 +18,7 @@ static inline void add_shared(ImageCheckValue& check, std::span<const std::byte>
   constexpr std::size_t kPieces = 1024, kPiece = ImageCheckValue::kPieceBytes;
   const std::size_t missing = check.missing_bytes();
   const std::uint32_t shares = shares_for(sharing);
-  if (!kSharesWork || shares == 1 || bytes.size() < missing + 2 * kPiece) return check.add(bytes);
+  if (!kSharesWork || shares == 1 || bytes.size() < missing + 64 * kPiece) return check.add(bytes);
   check.add(bytes.first(missing));
   bytes = bytes.subspan(missing);
   while (bytes.size() >= kPiece) {

@@ -3,7 +3,6 @@
 #include <gridiron/sim/host_team.h>
 
 #include <algorithm>
-#include <exception>
 
 namespace gridiron::sim {
 namespace {
@@ -12,7 +11,10 @@ namespace {
 // and let others run meanwhile.
 constexpr int kLooks = 5'000;
 
-void wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t from) {
+// Of the state.
+constexpr std::uint64_t kNextWork = std::uint64_t{1} << 32, kOpen = kNextWork / 2, kInside = kOpen - 1;
+
+void wait_for_change(const std::atomic<std::uint64_t>& value, std::uint64_t from) {
   for (int i = 0; i < kLooks; ++i) {
     if (value.load() != from) return;
     std::this_thread::yield();
@@ -29,15 +31,15 @@ HostTeam::HostTeam(std::uint32_t threads, const StartThread& start) {
     for (std::uint32_t i = 1; i < most; ++i) {
       threads_.push_back(start ? start([this, i] { serve(i); }) : std::thread([this, i] { serve(i); }));
     }
-  } catch (const std::exception&) {
+  } catch (...) {
     // std::system_error or std::bad_alloc: the host has no more; those that run are enough.
   }
 }
 
 HostTeam::~HostTeam() {
   ends_ = true;
-  ++works_;
-  works_.notify_all();
+  state_ += kNextWork;
+  state_.notify_all();
   for (std::thread& thread : threads_) thread.join();
 }
 
@@ -57,11 +59,10 @@ void HostTeam::run(std::uint32_t count, WorkSharing::Part part, void* work) {
     queues_[i].next = static_cast<std::uint32_t>(own.begin);
     queues_[i].end = static_cast<std::uint32_t>(own.end);
   }
-  serving_ = members_ - 1;
-  ++works_;
-  works_.notify_all();
+  state_ = (state_ / kNextWork + 1) * kNextWork + kOpen;
+  state_.notify_all();
   take_parts(0);
-  for (std::uint32_t left = serving_; left != 0; left = serving_) wait_for_change(serving_, left);
+  for (std::uint64_t left = state_ -= kOpen; (left & kInside) != 0; left = state_) wait_for_change(state_, left);
 }
 
 void HostTeam::take_parts(std::uint32_t member) {
@@ -72,12 +73,20 @@ void HostTeam::take_parts(std::uint32_t member) {
 }
 
 void HostTeam::serve(std::uint32_t member) {
-  for (std::uint32_t work = 0;; ++work) {
-    wait_for_change(works_, work);
+  for (std::uint64_t last = 0, state = state_;; state = state_) {
+    if (state / kNextWork == last) {
+      wait_for_change(state_, state);
+      continue;
+    }
     if (ends_) return;
-    take_parts(member);
-    --serving_;
-    serving_.notify_one();
+    last = state / kNextWork;
+    while (state / kNextWork == last && (state & kOpen) != 0) {
+      if (!state_.compare_exchange_weak(state, state + 1)) continue;
+      take_parts(member);
+      --state_;
+      state_.notify_all();
+      break;
+    }
   }
 }
 

@@ -13,7 +13,8 @@
 namespace gridiron::sim {
 
 /// Threads that wait for parts of a work. Each begins with the parts of its own place in the order, so that what a part
-/// has left in a processor's caches serves the same part of the next work; who has none left takes those of others.
+/// has left in a processor's caches serves the same part of the next work; who has none left takes those of others. A
+/// part must not share work with the team that it is of.
 class HostTeam {
  public:
   /// Starts threads - 1 threads; fewer where the host has no more. @param start  for tests; empty: std::thread.
@@ -40,10 +41,11 @@ class HostTeam {
   Queue queues_[kMostSharers];
   WorkSharing::Part part_ = nullptr;
   void* work_ = nullptr;
-  std::uint32_t members_ = 1;               ///< of this work
-  std::atomic<std::uint32_t> works_ = 0;    ///< begun so far
-  std::atomic<std::uint32_t> serving_ = 0;  ///< threads that have not ended this work
-  bool ends_ = false;
+  std::uint32_t members_ = 1;  ///< of this work
+  /// The number of the work, whether threads may still enter it, and how many are inside: nobody waits for a thread
+  /// that the host has not let run.
+  std::atomic<std::uint64_t> state_ = 0;
+  std::atomic<bool> ends_ = false;
 };
 
 }  // namespace gridiron::sim

@@ -33,7 +33,9 @@ inline constexpr std::uint64_t kManyTreeTriangles = 1u << 15;
 ///                 area.
 /// @param nodes    room for all nodes; most_tree_nodes() is enough.
 /// @param scratch  8-byte aligned, at least tree_scratch_bytes().
-/// @param sharing  threads; meshes below kManyTreeTriangles are not shared.
+/// @param sharing  threads; meshes below kManyTreeTriangles are not shared. For each thread but one `records` needs
+/// room
+///                 for 256 KB of counts, which lie there before records do; others do not take part.
 /// Errors: kBadParameter, kBadVertex (beyond kCoordinateLimit), kBadIndex, kNoTriangles, kTooManyTriangles
 /// (kMaxTreeTriangles); kMemoryTooSmall: of any of the three, whose contents are then undefined. Cost: linear.
 [[nodiscard]] Status build_tree(const MeshView& mesh, std::uint32_t leaf_triangles, std::span<VertexTriangle> records,

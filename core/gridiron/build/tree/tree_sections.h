@@ -1,5 +1,5 @@
-// The sections of a scene image that hold the wide tree: their places and contents.
-// Source: own; core/SPEC.md. Memory: caller's. Threads: one. SPDX-License-Identifier: Apache-2.0
+// The sections of a scene image that hold the wide tree: their places and contents. Source: own; core/SPEC.md.
+// Memory: caller's. Threads: one, or those that share the work. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/base/effect_records.h>
@@ -7,6 +7,7 @@
 #include <gridiron/base/tree_records.h>
 #include <gridiron/build/lattice.h>
 #include <gridiron/build/tree/tree_builder.h>
+#include <gridiron/build/work_sharing.h>
 #include <gridiron/platform/status.h>
 #include <gridiron/scene/mesh.h>
 
@@ -43,6 +44,7 @@ struct TreeSections {
 ///
 /// @param mesh     the triangles as they are stored: a LatticeMesh if the format is kLattice.
 /// @param scratch  8-byte aligned, at least tree_scratch_bytes() of the mesh's triangles.
+/// @param sharing  threads, as of build_tree().
 /// Errors: kBadParameter if the mesh is not the one that was counted; the sections' bytes are then undefined.
 /// Cost: linear.
 [[nodiscard]] Status write_tree_sections(const MeshView& mesh, std::span<std::byte> scratch, TreeSections& sections,
