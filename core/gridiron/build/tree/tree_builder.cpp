@@ -179,13 +179,12 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   [[nodiscard]] std::uint32_t* counts_of(std::uint32_t share, std::uint32_t size) const {
     return share == 0 ? counts_ : reinterpret_cast<std::uint32_t*>(records_.data()) + (share - 1) * size;
   }
-  [[nodiscard]] static std::uint32_t room_for(std::size_t record_bytes, std::uint32_t size, std::uint32_t wanted) {
-    const std::size_t room = record_bytes / (size * sizeof(std::uint32_t)) + 1;
-    return wanted < room ? wanted : static_cast<std::uint32_t>(room);
-  }
   [[nodiscard]] static std::uint32_t shares_of(std::size_t triangle_count, std::size_t record_bytes,
                                                const WorkSharing& sharing) {
-    return triangle_count < kManyTreeTriangles ? 1 : room_for(record_bytes, kManyKeysCounts, shares_for(sharing));
+    if (triangle_count < kManyTreeTriangles) return 1;
+    const std::size_t room = record_bytes / (kManyKeysCounts * sizeof(std::uint32_t)) + 1;
+    const std::uint32_t wanted = shares_for(sharing);
+    return wanted < room ? wanted : static_cast<std::uint32_t>(room);
   }
 
   [[nodiscard]] bool bound_all_vertices(QuadBox& box) {
@@ -379,10 +378,12 @@ class TreeBuilder : private TreeSplits<TreeBuilder<Mesh, Form>> {
   // Shares of the nodes of a level: more than there are sharers, as some nodes take longer than others.
   struct NodeShares {
     static constexpr std::uint32_t kTurns = 4, kMost = kMostShares * kTurns, kLeastNodes = 4;  // of a share
+    // Their counts fit where those for sorting were: of two sharers, and of each further one.
+    static_assert((2 * kTurns - 1) * kCrowdCounts <= kManyKeysCounts && kTurns * kCrowdCounts <= kManyKeysCounts);
     std::uint32_t nodes, count;
 
     NodeShares(const TreeBuilder& builder, std::uint32_t of) : nodes(of), count((of + kLeastNodes - 1) / kLeastNodes) {
-      const std::uint32_t most = room_for(builder.records_.size_bytes(), kCrowdCounts, builder.shares_ * kTurns);
+      const std::uint32_t most = builder.shares_ * kTurns;
       count = count < most ? count : most;
     }
     [[nodiscard]] std::uint32_t begin(std::uint32_t i) const {
