@@ -10,8 +10,8 @@
 
 #include "build_entry.h"
 #include "core/build/grid/line_buffer.h"
+#include "support/image_to_build.h"
 #include "support/ply_load.h"
-#include "support/test_mesh.h"
 
 namespace gridiron::test {
 namespace {
@@ -437,51 +437,25 @@ std::vector<std::byte> image_by_one(const TestMesh& mesh, std::uint32_t leaf_tri
 
 template <class Layout>
 std::vector<std::byte> image_by_cores(const TestMesh& mesh, std::uint32_t leaf_triangles, const Way& way) {
-  const std::uint64_t count = mesh.triangles.size(), node_room = most_tree_nodes(count, leaf_triangles);
-  BuildInput input;
-  input.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
-  input.triangle_count = input.record_room = static_cast<std::uint32_t>(count);
-  input.leaf_triangles = leaf_triangles;
-  input.order = TreeOrder::kByNumber;
-  input.node_room = static_cast<std::uint32_t>(node_room);
-  input.image_room = kTreeImageHeadBytes + round_up<std::uint64_t>(48 * count, 128) + sizeof(TreeNode) * node_room;
-  input.is_tree_image = true;
-  input.image = MainAddress{128};
-  const std::uint64_t scratch_bytes = build_scratch_bytes<Layout>(input);
-  sim::SimMemory memory(scratch_bytes + 12 * mesh.vertices.size() + 12 * count + input.image_room + (1u << 20));
-  const auto vertices = memory.allocate(12 * mesh.vertices.size() + 16).value();
-  const auto triangles = memory.allocate(12 * count + 16).value();
-  const auto image = memory.allocate(input.image_room).value(), result = memory.allocate(sizeof(BuildResult)).value();
-  const auto scratch = memory.allocate(scratch_bytes).value();
-  std::ranges::copy(std::as_bytes(std::span(mesh.vertices)), vertices.bytes.begin());
-  std::ranges::copy(std::as_bytes(std::span(mesh.triangles)), triangles.bytes.begin());
-  for (const auto& region : {image, result, scratch}) std::ranges::fill(region.bytes, std::byte{0xA5});
-  input.vertices = vertices.address;
-  input.triangles = triangles.address;
-  input.image = image.address;
-  input.result = result.address;
-  input.scratch = scratch.address;
-  BuildPlan plan{};
-  EXPECT_EQ(plan_build<Layout>(input, plan), Status::kOk);
-  std::vector<sim::MainRange> writable;
-  for (const auto& region : {image, result, scratch}) {
-    writable.push_back({region.address.value, region.address.value + region.bytes.size()});
-  }
-  const sim::PassesResult run = run_plan<Layout>(memory, plan, way, writable);
+  ImageToBuild<Layout> built(mesh, leaf_triangles, TreeOrder::kByNumber);
+  const BuildPlan& plan = built.plan;
+  const sim::PassesResult run = run_plan<Layout>(built.memory, plan, way, built.writable);
   EXPECT_EQ(run.status, Status::kOk) << words_of_violations(run);
   if (run.status != Status::kOk) return {};
-  auto& header = *reinterpret_cast<ImageHeader*>(image.bytes.data());
-  const auto checks =
-      memory.bytes_at(plan.piece_checks, sizeof(PieceCheck) * std::uint64_t{plan.item_counts[kBuildPassCount - 1]});
+  const std::span<std::byte> image = built.image.bytes;
+  auto& header = *reinterpret_cast<ImageHeader*>(image.data());
+  const auto checks = built.memory.bytes_at(plan.piece_checks,
+                                            sizeof(PieceCheck) * std::uint64_t{plan.item_counts[kBuildPassCount - 1]});
   EXPECT_EQ(finish_built_image({reinterpret_cast<const PieceCheck*>(checks.data()), checks.size() / sizeof(PieceCheck)},
                                header),
             Status::kOk);
   SceneImageView view{};
   SceneImageError error;
-  EXPECT_EQ(open_scene_image(image.bytes, view, error), Status::kOk) << error.field;
-  const auto rest = image.bytes.subspan(header.image_bytes);
-  EXPECT_TRUE(std::ranges::all_of(rest, [](std::byte byte) { return byte == std::byte{0xA5}; })) << "behind its end";
-  return {image.bytes.begin(), image.bytes.begin() + static_cast<std::ptrdiff_t>(header.image_bytes)};
+  EXPECT_EQ(open_scene_image(image, view, error), Status::kOk) << error.field;
+  EXPECT_TRUE(std::ranges::all_of(image.subspan(header.image_bytes),
+                                  [](std::byte byte) { return byte == ImageToBuild<Layout>::kUnwritten; }))
+      << "behind its end";
+  return {image.begin(), image.begin() + static_cast<std::ptrdiff_t>(header.image_bytes)};
 }
 
 // Each transfer that fails ends the build with its status, in whichever pass it is.

@@ -16,7 +16,7 @@
 
 #include "core/dma/test_platform.h"
 #include "gridiron/info/loop_table.h"
-#include "support/test_mesh.h"
+#include "support/image_to_build.h"
 
 namespace gridiron::test {
 namespace {
@@ -41,43 +41,17 @@ Counts counts_of(const sim::TileTrace& item) {
 // Builds the image of a mesh on one core.
 template <class Layout>
 CountedBuild counted_build(const TestMesh& mesh, std::uint32_t leaf_triangles) {
+  ImageToBuild<Layout> built(mesh, leaf_triangles, TreeOrder::kForAnyHit);
   CountedBuild build;
-  BuildInput& input = build.input;
-  const std::uint64_t count = mesh.triangles.size(), nodes = most_tree_nodes(count, leaf_triangles);
-  input.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
-  input.triangle_count = input.record_room = static_cast<std::uint32_t>(count);
-  input.node_room = static_cast<std::uint32_t>(nodes);
-  input.leaf_triangles = leaf_triangles;
-  input.is_tree_image = true;
-  input.image_room = kTreeImageHeadBytes + round_up<std::uint64_t>(48 * count, 128) + sizeof(TreeNode) * nodes;
-  input.image = MainAddress{128};
-  const std::uint64_t scratch_bytes = build_scratch_bytes<Layout>(input);
-  sim::SimMemory memory(scratch_bytes + 12 * mesh.vertices.size() + 12 * count + input.image_room + (1u << 20));
-  const auto vertices = memory.allocate(12 * mesh.vertices.size() + 16).value();
-  const auto triangles = memory.allocate(12 * count + 16).value();
-  const auto image = memory.allocate(input.image_room).value(), result = memory.allocate(sizeof(BuildResult)).value();
-  const auto scratch = memory.allocate(scratch_bytes).value();
-  std::ranges::copy(std::as_bytes(std::span(mesh.vertices)), vertices.bytes.begin());
-  std::ranges::copy(std::as_bytes(std::span(mesh.triangles)), triangles.bytes.begin());
-  input.vertices = vertices.address;
-  input.triangles = triangles.address;
-  input.image = image.address;
-  input.result = result.address;
-  input.scratch = scratch.address;
-  BuildPlan plan{};
-  EXPECT_EQ(plan_build<Layout>(input, plan), Status::kOk);
-  std::vector<sim::MainRange> writable;
-  for (const auto& region : {image, result, scratch}) {
-    writable.push_back({region.address.value, region.address.value + region.bytes.size()});
-  }
+  build.input = built.input;
   std::vector<sim::Pass> passes;
   for (std::uint32_t i = 0; i < kBuildPassCount; ++i) {
     const auto pass = static_cast<BuildPass>(i);
     passes.push_back({.name = sim::name_of(pass),
-                      .items = {.most = plan.item_counts[i]},
+                      .items = {.most = built.plan.item_counts[i]},
                       .data_bytes = sizeof(BuildStore<Layout>),
-                      .writable = writable,
-                      .kernel = sim::PassKernel([&plan, pass](auto& core, std::span<std::byte> data) {
+                      .writable = built.writable,
+                      .kernel = sim::PassKernel([&plan = built.plan, pass](auto& core, std::span<std::byte> data) {
                         return run_build_pass(core, *reinterpret_cast<BuildStore<Layout>*>(data.data()), plan, pass);
                       }),
                       .engine = &sim::work_of(pass)});
@@ -85,7 +59,7 @@ CountedBuild counted_build(const TestMesh& mesh, std::uint32_t leaf_triangles) {
   sim::ChipOptions options;
   options.threads = 1;
   options.store = Layout::kArenaBytes > 65536 ? sim::StoreSize::k256KB : sim::StoreSize::k64KB;
-  const sim::PassesResult run = sim::run_passes(memory, passes, options);
+  const sim::PassesResult run = sim::run_passes(built.memory, passes, options);
   EXPECT_EQ(run.status, Status::kOk);
   for (std::size_t i = 0; i < run.passes.size(); ++i) {
     for (const sim::TileTrace& item : run.passes[i].result.trace.tiles) build.items[i].push_back(counts_of(item));
