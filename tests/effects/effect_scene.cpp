@@ -1,6 +1,7 @@
 // Scenes in code: see the header. SPDX-License-Identifier: Apache-2.0
 #include "effects/effect_scene.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <tuple>
@@ -196,6 +197,23 @@ SceneDescription glass_ball_scene(bool is_smooth, std::uint32_t f) {
                             .smooth_normals = is_smooth};
   add_ball(scene, {0, 0.4f, 0}, 1, f, add_material(scene, glass));
   add_point_light(scene, {-2, 5, 3}, Vec3(0.8f));
+  return scene;
+}
+
+SceneDescription colored_ball_scene(std::uint32_t f) {
+  SceneDescription scene = empty_scene({0, 2, 6}, {0, 0.8f, 0}, {0, 1, 0}, 40);
+  scene.background = {0.02f, 0.05f, 0.3f};
+  scene.levels = ColorLevels::kSrgb;
+  add_point_light(scene, {3, 6, 5}, Vec3(1));
+  const std::uint16_t material =
+      add_material(scene, {.kd = 0.9f, .ks = 0.1f, .shine = 20, .smooth_normals = true, .vertex_colors = true});
+  add_ball(scene, {0, 1, 0}, 1, f, material);
+  add_box(scene, {-3, -0.5f, -3}, {3, 0, 3}, material);
+  tool::SceneGeometry& geometry = scene.geometry;
+  for (const Vec3& vertex : geometry.vertices) {
+    geometry.colors.push_back(glm::clamp(0.5f + 0.25f * vertex, 0.0f, 1.0f) * Vec3(1, 0.6f, 0.1f));
+  }
+  geometry.triangle_colors = geometry.triangles;
   return scene;
 }
 

@@ -57,6 +57,9 @@ void transform_scene(tool::SceneDescription& scene, float scale, Vec3 offset);
 /// A ball of glass (index 1.5, flat or smooth) above a floor of two colours; point light, depth 6.
 [[nodiscard]] tool::SceneDescription glass_ball_scene(bool is_smooth, std::uint32_t f = 8);
 
+/// A ball above a floor, both with colours at their vertices, on the curve of sRGB; point light, mirrors a little.
+[[nodiscard]] tool::SceneDescription colored_ball_scene(std::uint32_t f = 8);
+
 /// Floor y = 0 and wall x = 0, both of extent `size`, seen from where both are positive; ambient occlusion only.
 [[nodiscard]] tool::SceneDescription occlusion_corner_scene(float size, float radius, std::uint32_t samples);
 

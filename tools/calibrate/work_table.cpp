@@ -54,6 +54,8 @@ struct EffectScene {
   std::vector<std::uint16_t> triangle_materials;
   std::vector<Vec3> normals;
   std::vector<UVec3> triangle_normals;
+  std::vector<Vec3> colors;
+  std::vector<UVec3> triangle_colors;
   std::vector<Light> lights;
   std::vector<Vec3> environment;
   EffectsView view;
@@ -65,7 +67,12 @@ constexpr std::uint32_t kEnvironmentWidth = 16;
 void make_effect_scene(const Scene& teapot, bool with_environment, EffectScene& scene) {
   scene.mesh = teapot;
   scene.materials = {
-      {.color = {0.8f, 0.7f, 0.5f}, .kd = 0.7f, .ks = 0.3f, .shine = 30.0f, .smooth_normals = true},
+      {.color = {0.8f, 0.7f, 0.5f},
+       .kd = 0.7f,
+       .ks = 0.3f,
+       .shine = 30.0f,
+       .smooth_normals = true,
+       .vertex_colors = true},
       {.color = {0.9f, 0.9f, 1.0f}, .kd = 0.1f, .ks = 0.1f, .shine = 60.0f, .transmittance = 0.8f, .index = 1.5f},
       {.color = {0.6f, 0.6f, 0.6f}, .kd = 0.8f, .ks = 0.2f},
   };
@@ -80,11 +87,13 @@ void make_effect_scene(const Scene& teapot, bool with_environment, EffectScene& 
     const float length = square_root(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
     normal = length > 0.0f ? normal / length : Vec3{0.0f, 1.0f, 0.0f};
   }
+  for (const Vec3& place : teapot.vertices) scene.colors.emplace_back(place.y * 0.2f, 0.9f, 0.4f);
   // A third of the triangles is glass, by height: the lid.
   for (const UVec3& t : teapot.triangles) {
     const bool is_glass = teapot.vertices[t.x].y > 2.2f;
     scene.triangle_materials.push_back(is_glass ? 1 : 0);
     scene.triangle_normals.push_back(is_glass ? UVec3(kNoNormals) : t);
+    scene.triangle_colors.push_back(scene.triangle_normals.back());
   }
   // The floor, 8 by 8 squares.
   constexpr std::uint32_t kSquares = 8;
@@ -101,6 +110,7 @@ void make_effect_scene(const Scene& teapot, bool with_environment, EffectScene& 
     scene.mesh.triangles.emplace_back(corner + 1, corner + kSquares + 2, corner + kSquares + 1);
     scene.triangle_materials.insert(scene.triangle_materials.end(), 2, std::uint16_t{2});
     scene.triangle_normals.insert(scene.triangle_normals.end(), 2, UVec3(kNoNormals));
+    scene.triangle_colors.insert(scene.triangle_colors.end(), 2, UVec3(kNoNormals));
   }
   EffectsView& view = scene.view;
   if (with_environment) {
@@ -121,6 +131,7 @@ void make_effect_scene(const Scene& teapot, bool with_environment, EffectScene& 
     view.occlusion_samples = 16;
     view.occlusion_radius = 1.5f;
     view.samples_per_pixel = 4;
+    view.levels = ColorLevels::kSrgb;
   } else {
     scene.lights = {{.corner = {400.0f, 600.0f, 500.0f}, .color = {0.9f, 0.9f, 0.9f}},
                     {.corner = {-300.0f, 700.0f, 200.0f}, .color = {0.4f, 0.4f, 0.4f}}};
@@ -131,12 +142,14 @@ void make_effect_scene(const Scene& teapot, bool with_environment, EffectScene& 
   view.triangle_materials = scene.triangle_materials;
   view.normals = scene.normals;
   view.triangle_normals = scene.triangle_normals;
+  view.colors = scene.colors;
+  view.triangle_colors = scene.triangle_colors;
   view.lights = scene.lights;
 }
 
 // Work that only frames with effects have.
 bool is_of_effects(std::size_t kind) {
-  return kind >= WorkId(Work::kWaveRay).number() && kind <= WorkId(Work::kColorGroup).number();
+  return kind >= WorkId(Work::kWaveRay).number() && kind <= WorkId(Work::kSrgbLevel).number();
 }
 
 // Work that only frames with exact distances have, or hardly any other.

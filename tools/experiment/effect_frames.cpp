@@ -72,6 +72,8 @@ AbsentCost absent_cost(const EffectFrame& frame, EffectBits effect) {
                         frame.stage(Stage::kEnvironment));
     case kSmoothNormals:
       return counted(effect, "normals interpolated", frame.count(Work::kSmoothNormal));
+    case kVertexColors:
+      return counted(effect, "colours interpolated", frame.count(Work::kVertexColor));
     case kHighlights:
       return counted(effect, "highlights", frame.count(Work::kHighlight));
     case kMultisampling:

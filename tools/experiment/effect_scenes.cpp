@@ -180,9 +180,16 @@ EffectScene without_effect(EffectScene scene, EffectBits effect) {
       description.environment.reset();
       break;
     case kSmoothNormals:
-      for (tool::SceneMaterial& material : description.materials) material.smooth_normals = false;
+      for (tool::SceneMaterial& material : description.materials) {
+        material.smooth_normals = material.vertex_colors = false;
+      }
       description.geometry.normals.clear();
       description.geometry.triangle_normals.clear();
+      description.geometry.triangle_colors.clear();
+      break;
+    case kVertexColors:
+      for (tool::SceneMaterial& material : description.materials) material.vertex_colors = false;
+      description.geometry.triangle_colors.clear();
       break;
     case kHighlights:
       for (tool::SceneMaterial& material : description.materials) material.shine = 0;
@@ -197,7 +204,8 @@ EffectScene without_effect(EffectScene scene, EffectBits effect) {
 }
 
 std::uint32_t left_without(std::uint32_t called, EffectBits effect) {
-  return called & ~static_cast<std::uint32_t>(effect) & ~(effect == kReflection ? kRefraction : 0u);
+  const std::uint32_t built_on_it = effect == kReflection ? kRefraction : effect == kSmoothNormals ? kVertexColors : 0u;
+  return called & ~static_cast<std::uint32_t>(effect) & ~built_on_it;
 }
 
 }  // namespace gridiron::experiment

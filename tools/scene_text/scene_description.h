@@ -2,6 +2,7 @@
 // from. Memory: std::vector. Threads: any may read. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/effect_records.h>
 #include <gridiron/base/math.h>
 
 #include <array>
@@ -63,6 +64,7 @@ struct SceneMaterial {
   float transmittance = 0.0f;     ///< T, share of light let through, 0..1
   float index_of_refraction = 1;  ///< of the inside to the outside, kLeastRefraction..kMostRefraction; 1 where T is 0
   bool smooth_normals = false;    ///< true: every triangle of this material has normals; false: none has
+  bool vertex_colors = false;     ///< likewise colours, which the diffuse share is multiplied by; with normals only
 
   friend bool operator==(const SceneMaterial&, const SceneMaterial&) = default;
 };
@@ -84,7 +86,7 @@ struct AmbientOcclusion {
   float radius = 1.0f;         ///< > 0, world units: farther surfaces do not occlude
 };
 
-/// Value of triangle_normals for a triangle without normals.
+/// Value of triangle_normals and triangle_colors for a triangle without them.
 inline constexpr std::uint32_t kNoNormal = std::numeric_limits<std::uint32_t>::max();
 
 /// All geometry. Triangles are counter-clockwise seen from outside, in the file's order. Closed shapes share vertices.
@@ -95,6 +97,8 @@ struct SceneGeometry {
   std::vector<Vec3> normals;                      ///< unit to float rounding, outwards
   std::vector<UVec3> triangle_normals;  ///< empty where no material is smooth, else one per triangle: indices into
                                         ///< normals, or kNoNormal three times
+  std::vector<Vec3> colors;             ///< linear, 0..1 each
+  std::vector<UVec3> triangle_colors;   ///< likewise of the materials with colours: indices into colors
 };
 
 /// Where the tolerance of round shapes comes from.
@@ -146,6 +150,7 @@ struct SceneDescription {
   std::uint32_t samples_per_pixel = 1;                     ///< 1, 4 or 16
   std::uint32_t recursion_depth = kDefaultRecursionDepth;  ///< of a path of rays; the eye ray is of depth 1: 1..8
   bool shadows = true;
+  ColorLevels levels = ColorLevels::kLinear;
   SceneGeometry geometry;  ///< at least one triangle
 
   float tolerance = 0.0f;  ///< world units: no facet is farther than this, or than its object's in roundness, from the

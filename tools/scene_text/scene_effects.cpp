@@ -20,7 +20,8 @@ Material material_of(const SceneMaterial& material) {
           .shine = material.shine,
           .transmittance = material.transmittance,
           .index = material.index_of_refraction,
-          .smooth_normals = material.smooth_normals};
+          .smooth_normals = material.smooth_normals,
+          .vertex_colors = material.vertex_colors};
 }
 
 }  // namespace
@@ -31,11 +32,14 @@ EffectsView SceneEffects::view() const {
   effects.triangle_materials = triangle_materials;
   effects.normals = normals;
   effects.triangle_normals = triangle_normals;
+  effects.colors = colors;
+  effects.triangle_colors = triangle_colors;
   effects.lights = lights;
   effects.background = background;
   effects.has_shadows = has_shadows;
   effects.recursion_depth = recursion_depth;
   effects.samples_per_pixel = samples_per_pixel;
+  effects.levels = levels;
   effects.occlusion_samples = occlusion_samples;
   effects.occlusion_radius = occlusion_radius;
   effects.environment_width = environment_width;
@@ -52,6 +56,8 @@ SceneEffects take_scene_effects(SceneDescription& scene) {
   effects.triangle_materials = std::exchange(scene.geometry.triangle_materials, {});
   effects.normals = std::exchange(scene.geometry.normals, {});
   effects.triangle_normals = std::exchange(scene.geometry.triangle_normals, {});
+  effects.colors = std::exchange(scene.geometry.colors, {});
+  effects.triangle_colors = std::exchange(scene.geometry.triangle_colors, {});
   effects.lights.reserve(scene.point_lights.size() + scene.area_lights.size());
   for (const PointLight& light : scene.point_lights) {
     effects.lights.push_back({.corner = light.position, .color = light.color});
@@ -67,6 +73,7 @@ SceneEffects take_scene_effects(SceneDescription& scene) {
   effects.has_shadows = scene.shadows;
   effects.recursion_depth = scene.recursion_depth;
   effects.samples_per_pixel = scene.samples_per_pixel;
+  effects.levels = scene.levels;
   if (scene.ambient_occlusion) {
     effects.occlusion_samples = scene.ambient_occlusion->samples;
     effects.occlusion_radius = scene.ambient_occlusion->radius;

@@ -19,11 +19,14 @@ struct SceneEffects {
   std::vector<std::uint16_t> triangle_materials;
   std::vector<Vec3> normals;
   std::vector<UVec3> triangle_normals;
+  std::vector<Vec3> colors;
+  std::vector<UVec3> triangle_colors;
   std::vector<Light> lights;  ///< point lights first, each kind in the text's order
   Vec3 background{0, 0, 0};
   bool has_shadows = true;
   std::uint32_t recursion_depth = kDefaultRecursionDepth;
   std::uint32_t samples_per_pixel = 1;
+  ColorLevels levels = ColorLevels::kLinear;
   std::uint32_t occlusion_samples = 0;
   float occlusion_radius = 0.0f;
   std::uint32_t environment_width = 0;

@@ -34,6 +34,7 @@ struct EffectName {
     GRIDIRON_EFFECT_NAME(kSmoothNormals, "smooth_normals", "smooth normals", "smooth")
     GRIDIRON_EFFECT_NAME(kHighlights, "highlights", "highlights", "shine")
     GRIDIRON_EFFECT_NAME(kMultisampling, "multisampling", "several samples a pixel", "samples")
+    GRIDIRON_EFFECT_NAME(kVertexColors, "vertex_colors", "colours at vertices", "colors")
     GRIDIRON_EFFECT_NAME(kSceneShading, "scene_shading", "scene shading", "shading")
   }
   return {effect, nullptr, nullptr, nullptr, nullptr};

@@ -19,8 +19,9 @@ enum EffectBits : unsigned {
   kHighlights = 1u << 7,  ///< Blinn-Phong
   kMultisampling = 1u << 8,
   kSceneShading = 1u << 9,  ///< light of point lights and the background; every scene with effects has it
+  kVertexColors = 1u << 10,  ///< interpolated between a triangle's corners
 };
-inline constexpr std::uint32_t kEffectCount = 10;  ///< bits of EffectBits
+inline constexpr std::uint32_t kEffectCount = 11;  ///< bits of EffectBits
 inline constexpr std::uint32_t kAllEffects = (1u << kEffectCount) - 1u;  ///< the set of all effects
 
 inline constexpr std::uint32_t kMaxMaterials = 65535;      ///< of a scene
@@ -30,6 +31,12 @@ inline constexpr std::uint32_t kMaxRecursionDepth = 8;     ///< the eye ray is o
 inline constexpr std::uint32_t kMaxEnvironmentWidth = 1024;  ///< texels of a face's edge
 inline constexpr float kAmbientLight = 0.5f;               ///< what ambient occlusion darkens; core/EFFECTS.md
 inline constexpr float kMaxLightColor = 1e6f;              ///< of each channel
+
+/// How brightness 0..1 becomes the levels 0..255 of a pixel.
+enum class ColorLevels : std::uint32_t {
+  kLinear = 0,  ///< in proportion
+  kSrgb = 1,    ///< by the curve of IEC 61966-2-1, as screens expect it
+};
 
 /// Settings of a scene with effects; an image has one. 128 bytes.
 struct EffectsRecord {
@@ -51,7 +58,8 @@ struct EffectsRecord {
   std::uint64_t surfaces_offset_bytes;     ///< SurfaceRecord[triangle_count], by triangle_id
   std::uint64_t normals_offset_bytes;      ///< NormalRecord[smooth_triangle_count]
   std::uint64_t environment_offset_bytes;  ///< EnvironmentBlock[6 * blocks * blocks], face, row, column
-  std::uint32_t reserved[8];
+  std::uint32_t levels;                    ///< ColorLevels
+  std::uint32_t reserved[7];
 };
 static_assert(sizeof(EffectsRecord) == 128);
 
@@ -64,7 +72,7 @@ struct MaterialRecord {
   float shine;           ///< exponent of the highlight, 0: none; ..1e5
   float index;           ///< of refraction, of the inside to the outside; 0.1..10
   std::uint32_t is_smooth;  ///< 0, 1: triangles have normals
-  std::uint32_t reserved;
+  std::uint32_t has_colors; ///< 0, 1: and colours at their corners; only where is_smooth is 1
 };
 static_assert(sizeof(MaterialRecord) == 48);
 
@@ -94,10 +102,16 @@ struct SurfaceRecord {
 static_assert(sizeof(SurfaceRecord) == 48);
 inline constexpr std::uint32_t kNoNormals = 0xFFFFFFFFu;  ///< for a flat triangle
 
-/// Normals at a triangle's corners, unit to rounding, outwards.
+/// A linear colour as a word: of each channel the root, in steps of 1 / kColorSteps. Red lies in bits 0..9, green in
+/// 10..19, blue in 20..29; the others are 0. Roots have steps about as fine for the eye in the dark as in the light.
+using PackedColor = std::uint32_t;
+inline constexpr std::uint32_t kColorSteps = 1023;  ///< of a channel from 0 to 1
+inline constexpr std::uint32_t kColorBits = 10;     ///< of a channel
+
+/// Normals at a triangle's corners, unit to rounding, outwards, and the corners' colours.
 struct NormalRecord {
-  float n[3][3];  ///< corner, axis
-  std::uint32_t reserved[3];
+  float n[3][3];          ///< corner, axis
+  PackedColor colors[3];  ///< of each corner; 0 unless the material has_colors
 };
 static_assert(sizeof(NormalRecord) == 48);
 

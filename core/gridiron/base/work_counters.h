@@ -89,6 +89,8 @@ enum class Work : std::uint8_t {
   kEnvironmentLookup,  ///< colours looked up in the environment map
   kColorAdded,         ///< colours added to a pixel's sum
   kColorGroup,         ///< SIMD groups of pixels made of their sums
+  kVertexColor,        ///< hits of which the colour was interpolated
+  kSrgbLevel,          ///< channels of pixels put on the curve of sRGB
   kGetIssue,           ///< get commands issued
   kPutIssue,           ///< put commands issued
   kWait,               ///< waits
@@ -99,7 +101,7 @@ enum class Work : std::uint8_t {
 inline constexpr std::uint32_t kSharedWorkCount = static_cast<std::uint32_t>(Work::kCount);
 /// Kinds that there are counters for. A frame has one engine of eye rays, so all of these use the
 /// same ones; the kinds of the tree, which traces the other rays beside any of them, are in Work.
-inline constexpr std::uint32_t kWorkKindCount = 101;
+inline constexpr std::uint32_t kWorkKindCount = 103;
 
 /// A kind of Work or of an engine: the number of its counter.
 class WorkId {

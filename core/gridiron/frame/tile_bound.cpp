@@ -264,6 +264,7 @@ class Sum {
     add(Work::kDoubleSign, rays);  // on which side of its triangle a ray that grazes it began
     add(Work::kExactSign, rays);
     if (calls_for(kSmoothNormals)) add(Work::kSmoothNormal, rays);
+    if (calls_for(kVertexColors)) add(Work::kVertexColor, rays);
     if (calls_for(kAreaLights | kAmbientOcclusion)) add(Work::kJitterSeed, rays);
     if (calls_for(kEnvironment)) add(Work::kEnvironmentLookup, rays);
     if (effects.has_shadows != 0) add(Work::kShadowRay, to_lights);
@@ -273,6 +274,7 @@ class Sum {
     add(Work::kOcclusionRay, into_the_open);
     add(Work::kColorAdded, larger(rays, to_lights + into_the_open));  // a ray that hits nothing adds one colour
     add(Work::kColorGroup, pixels / 4);
+    if (effects.levels == static_cast<std::uint32_t>(ColorLevels::kSrgb)) add(Work::kSrgbLevel, 3 * pixels);
 
     Count listed = queued + into_the_open;
     if (effects.has_shadows != 0) listed = listed + to_lights;

@@ -1,8 +1,8 @@
 // Checks of the sections of effects: see image_checker.h. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
 #include <gridiron/base/math.h>
-#include <gridiron/build/triangle_records.h>
 #include <gridiron/build/lattice.h>
+#include <gridiron/build/triangle_records.h>
 #include <gridiron/image/image_checker.h>
 #include <gridiron/scene/effect_rules.h>
 
@@ -32,7 +32,7 @@ bool check_materials(ImageChecker& checker, const EffectsRecord& effects) {
         material.transmittance > 0.0f ? within(material.index, kLeastIndex, kGreatestIndex) : material.index == 1.0f;
     GRIDIRON_REQUIRE(index_ok, base, material, index);
     GRIDIRON_REQUIRE(material.is_smooth <= 1, base, material, is_smooth);
-    GRIDIRON_REQUIRE(material.reserved == 0, base, material, reserved);
+    GRIDIRON_REQUIRE(material.has_colors <= material.is_smooth, base, material, has_colors);
   }
   return true;
 }
@@ -81,6 +81,16 @@ bool is_storable(const SurfaceRecord& surface, const GridRecord& grid) {
   return true;
 }
 
+bool check_normal(ImageChecker& checker, const EffectsRecord& effects, std::uint64_t index, bool has_colors) {
+  const std::uint64_t base = effects.normals_offset_bytes + index * sizeof(NormalRecord);
+  const auto normal = checker.read<NormalRecord>(base);
+  GRIDIRON_REQUIRE(is_unit(normal.n[0]) && is_unit(normal.n[1]) && is_unit(normal.n[2]), base, normal, n);
+  for (const PackedColor color : normal.colors) {
+    GRIDIRON_REQUIRE(color >> (has_colors ? 3 * kColorBits : 0) == 0, base, normal, colors);
+  }
+  return true;
+}
+
 bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCall& call) {
   const EffectsRecord& effects = view.effects;
   const ImageHeader& header = view.header;
@@ -107,7 +117,10 @@ bool check_surfaces(ImageChecker& checker, const SceneImageView& view, EffectsCa
     }
     const bool is_smooth = material.is_smooth != 0;
     GRIDIRON_REQUIRE(surface.normals == (is_smooth ? normals : kNoNormals), base, surface, normals);
-    normals += is_smooth ? 1u : 0u;
+    if (!is_smooth) continue;
+    GRIDIRON_REQUIRE(normals < effects.smooth_triangle_count, view.effects_offset_bytes, effects,
+                     smooth_triangle_count);
+    if (!check_normal(checker, effects, normals++, material.has_colors != 0)) return false;
   }
   GRIDIRON_REQUIRE(dropped == header.dropped_triangle_count, 0, header, dropped_triangle_count);
   GRIDIRON_REQUIRE(normals == effects.smooth_triangle_count, view.effects_offset_bytes, effects, smooth_triangle_count);
@@ -123,16 +136,6 @@ bool check_corners(ImageChecker& checker, const SceneImageView& view) {
         view.effects.surfaces_offset_bytes + std::uint64_t{triangle.triangle_id} * sizeof(SurfaceRecord);
     const auto surface = checker.read<SurfaceRecord>(base);
     GRIDIRON_REQUIRE(same_bits(&surface.v[0][0], &triangle.v[0][0], 9), base, surface, v);
-  }
-  return true;
-}
-
-bool check_normals(ImageChecker& checker, const EffectsRecord& effects) {
-  for (std::uint64_t i = 0; i < effects.smooth_triangle_count; ++i) {
-    const std::uint64_t base = effects.normals_offset_bytes + i * sizeof(NormalRecord);
-    const auto normal = checker.read<NormalRecord>(base);
-    GRIDIRON_REQUIRE(is_unit(normal.n[0]) && is_unit(normal.n[1]) && is_unit(normal.n[2]), base, normal, n);
-    GRIDIRON_REQUIRE(all_zero(normal.reserved, 3), base, normal, reserved);
   }
   return true;
 }
@@ -192,8 +195,7 @@ bool check_effect_sections(ImageChecker& checker, const SceneImageView& view) {
                    effects, occlusion_radius);
   EffectsCall call;
   if (!check_materials(checker, effects) || !check_lights(checker, view, call) ||
-      !check_surfaces(checker, view, call) || !check_corners(checker, view) || !check_normals(checker, effects) ||
-      !check_environment(checker, effects)) {
+      !check_surfaces(checker, view, call) || !check_corners(checker, view) || !check_environment(checker, effects)) {
     return false;
   }
   GRIDIRON_REQUIRE(effects.called_for == call.called_for(effects), base, effects, called_for);

@@ -41,13 +41,16 @@ inline constexpr float kMaxShareSum = 1.0f + 0x1p-20f;  ///< of scaled shares: 1
 /// @returns whether directions as long as the radius of ambient occlusion stay within kCellDirectionLimit.
 [[nodiscard]] bool radius_is_in_reach(float radius, const GridRecord& grid);
 
+/// @returns the nearest colour that an image can hold. @param color  0..1 each.
+[[nodiscard]] PackedColor packed_color(const Vec3& color);
+
 /// @returns whether a normal's length differs from 1 by 2^-10 at most.
 [[nodiscard]] bool is_unit(const float normal[3]);
 
 /// The lights and the materials in use, which decide the effects that a scene needs.
 struct EffectsCall {
   bool point_light = false, area_light = false;  ///< of a color that is not 0
-  bool reflects = false, refracts = false, shines = false, smooth = false;
+  bool reflects = false, refracts = false, shines = false, smooth = false, colors = false;
 
   void add_light(const LightRecord& light);
   void add_material(const MaterialRecord& material);
@@ -68,6 +71,8 @@ template <class Checker>
   const float radius = effects.occlusion_radius;
   GRIDIRON_RULE_OF(0, effects.occlusion_samples == 0 ? radius == 0.0f : radius > 0.0f && radius <= kCoordinateLimit,
                    base, effects, occlusion_radius);
+  GRIDIRON_RULE_OF(effects.levels, effects.levels <= static_cast<std::uint32_t>(ColorLevels::kSrgb), base, effects,
+                   levels);
   for (const float color : effects.background) {
     GRIDIRON_RULE_OF(0, within(color, 0.0f, 1.0f), base, effects, background);
   }

@@ -1,5 +1,6 @@
 // Effects of a scene: see the headers. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/base/lanes.h>
+#include <gridiron/base/one_lane.h>
 #include <gridiron/scene/effect_rules.h>
 #include <gridiron/scene/effects.h>
 
@@ -72,7 +73,8 @@ bool material_is_in_range(const Material& material) {
   const bool index_ok =
       material.transmittance > 0.0f ? within(material.index, kLeastIndex, kGreatestIndex) : is_finite(material.index);
   return all_within(material.color, 0.0f, 1.0f) && within(material.kd, 0.0f, 1.0f) && within(material.ks, 0.0f, 1.0f) &&
-         within(material.transmittance, 0.0f, 1.0f) && within(material.shine, 0.0f, kMaxShine) && index_ok;
+         within(material.transmittance, 0.0f, 1.0f) && within(material.shine, 0.0f, kMaxShine) && index_ok &&
+         (material.smooth_normals || !material.vertex_colors);
 }
 
 Status check_lights(const EffectsView& effects) {
@@ -89,18 +91,26 @@ Status check_lights(const EffectsView& effects) {
   return Status::kOk;
 }
 
-// Materials must exist; normals, all three or none, must be there exactly if the material is smooth.
+// Whether a triangle has three indices below `count` where it must have them, and else none.
+Status check_corners(const UVec3& indices, bool must_have, std::size_t count) {
+  if ((indices == UVec3(kNoNormals)) == must_have) return Status::kBadEffects;
+  for (int corner = 0; corner < 3 && must_have; ++corner) {
+    if (indices[corner] >= count) return Status::kBadIndex;
+  }
+  return Status::kOk;
+}
+
+// Materials must exist; normals and colours must be there exactly if the material says so.
 Status check_triangles(const MeshView& mesh, const EffectsView& effects) {
-  const bool have_normals = !effects.triangle_normals.empty();
+  const auto corners = [](std::span<const UVec3> indices, std::size_t i) {
+    return indices.empty() ? UVec3(kNoNormals) : indices[i];
+  };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const std::uint32_t material = effects.triangle_materials[i];
     if (material >= effects.materials.size()) return Status::kBadIndex;
-    const UVec3 normals = have_normals ? effects.triangle_normals[i] : UVec3(kNoNormals);
-    const bool has_none = normals == UVec3(kNoNormals);
-    if (has_none == effects.materials[material].smooth_normals) return Status::kBadEffects;
-    for (int corner = 0; corner < 3 && !has_none; ++corner) {
-      if (normals[corner] >= effects.normals.size()) return Status::kBadIndex;
-    }
+    const Material& surface = effects.materials[material];
+    GRIDIRON_TRY(check_corners(corners(effects.triangle_normals, i), surface.smooth_normals, effects.normals.size()));
+    GRIDIRON_TRY(check_corners(corners(effects.triangle_colors, i), surface.vertex_colors, effects.colors.size()));
   }
   return Status::kOk;
 }
@@ -132,6 +142,7 @@ MaterialRecord scaled_material(const Material& material) {
   record.shine = material.shine;
   record.index = record.transmittance > 0.0f ? material.index : 1.0f;
   record.is_smooth = material.smooth_normals ? 1 : 0;
+  record.has_colors = material.vertex_colors ? 1 : 0;
   return record;
 }
 
@@ -173,6 +184,15 @@ bool radius_is_in_reach(float radius, const GridRecord& grid) {
   return true;
 }
 
+PackedColor packed_color(const Vec3& color) {
+  PackedColor word = 0;
+  for (std::uint32_t channel = 0; channel < 3; ++channel) {
+    const float steps = square_root(color[static_cast<int>(channel)]) * static_cast<float>(kColorSteps) + 0.5f;
+    word |= static_cast<std::uint32_t>(static_cast<std::int32_t>(steps)) << (kColorBits * channel);
+  }
+  return word;
+}
+
 bool is_unit(const float normal[3]) {
   constexpr double kLeast = 1.0 - 0x1p-10, kMost = 1.0 + 0x1p-10;
   double square = 0.0;
@@ -190,6 +210,7 @@ void EffectsCall::add_material(const MaterialRecord& material) {
   refracts |= material.transmittance > 0.0f;
   shines |= material.specular > 0.0f && material.shine > 0.0f;
   smooth |= material.is_smooth != 0;
+  colors |= material.has_colors != 0;
 }
 
 std::uint32_t EffectsCall::called_for(const EffectsRecord& scene) const {
@@ -197,7 +218,8 @@ std::uint32_t EffectsCall::called_for(const EffectsRecord& scene) const {
   const bool bounces = scene.recursion_depth > 1;
   return kSceneShading | counted_effects(scene) | bit(scene.has_shadows != 0 && point_light, kPointShadows) |
          bit(area_light, kAreaLights) | bit(bounces && reflects, kReflection) | bit(bounces && refracts, kRefraction) |
-         bit(smooth, kSmoothNormals) | bit((point_light || area_light) && shines, kHighlights);
+         bit(smooth, kSmoothNormals) | bit(colors, kVertexColors) |
+         bit((point_light || area_light) && shines, kHighlights);
 }
 
 EffectsRecord scene_settings(const EffectsView& effects) {
@@ -217,6 +239,7 @@ EffectsRecord scene_settings(const EffectsView& effects) {
   copy(record.background, effects.background);
   record.has_shadows = effects.has_shadows ? 1 : 0;
   record.environment_width = effects.environment_width;
+  record.levels = static_cast<std::uint32_t>(effects.levels);
   return record;
 }
 
@@ -240,7 +263,8 @@ Status check_effects(const MeshView& mesh, const EffectsView& effects) {
   }
   const std::size_t triangle_count = mesh.triangles.size();
   if (effects.triangle_materials.size() != triangle_count ||
-      (!effects.triangle_normals.empty() && effects.triangle_normals.size() != triangle_count)) {
+      (!effects.triangle_normals.empty() && effects.triangle_normals.size() != triangle_count) ||
+      (!effects.triangle_colors.empty() && effects.triangle_colors.size() != triangle_count)) {
     return Status::kBadEffects;
   }
   for (const Material& material : effects.materials) {
@@ -249,6 +273,9 @@ Status check_effects(const MeshView& mesh, const EffectsView& effects) {
   for (const Vec3& normal : effects.normals) {
     const float components[3] = {normal.x, normal.y, normal.z};
     if (!is_unit(components)) return Status::kBadEffects;
+  }
+  for (const Vec3& color : effects.colors) {
+    if (!all_within(color, 0.0f, 1.0f)) return Status::kBadEffects;
   }
   GRIDIRON_TRY(check_lights(effects));
   if (!environment_is_in_range(effects)) return Status::kBadEffects;

@@ -22,6 +22,7 @@ struct Material {
   float transmittance = 0.0f;  ///< share let through, 0..1
   float index = 1.0f;          ///< of refraction, 0.1..10 where transmittance is above 0
   bool smooth_normals = false;  ///< its triangles have normals at their corners
+  bool vertex_colors = false;   ///< and colours, which its diffuse share is multiplied by; only with smooth_normals
 };
 
 /// A point light (samples = 0), or an area light corner + a edge_u + b edge_v; both are equally bright.
@@ -39,11 +40,14 @@ struct EffectsView {
   std::span<const std::uint16_t> triangle_materials;    ///< one per triangle of the mesh
   std::span<const Vec3> normals;                        ///< unit to 2^-10
   std::span<const UVec3> triangle_normals;              ///< empty, or one per triangle: into normals, or kNoNormals
+  std::span<const Vec3> colors;                         ///< linear, 0..1 each
+  std::span<const UVec3> triangle_colors;               ///< empty, or one per triangle: into colors, or kNoColors
   std::span<const Light> lights;                        ///< 0..kMaxLights, point lights first
   Vec3 background{0, 0, 0};                             ///< 0..1 each
   bool has_shadows = true;                              ///< of all lights
   std::uint32_t recursion_depth = 5;                    ///< 1..kMaxRecursionDepth
   std::uint32_t samples_per_pixel = 1;                  ///< 1, 4, 16
+  ColorLevels levels = ColorLevels::kLinear;            ///< of the picture
   std::uint32_t occlusion_samples = 0;                  ///< 0: no ambient occlusion
   float occlusion_radius = 0.0f;                        ///< > 0 where there is
   std::uint32_t environment_width = 0;                  ///< texels of a face's edge, 0: no environment
@@ -55,9 +59,9 @@ struct EffectsView {
 [[nodiscard]] std::uint32_t effects_called_for(const EffectsView& effects);
 
 /// Checks every range and count against the mesh, also for materials that are not in use. Lights and all corners of
-/// area lights lie within kCoordinateLimit, edges of area lights are not parallel, and exactly the triangles with
-/// smooth materials have normals. count_scene_image checks what depends on the grid.
-/// Errors: kBadEffects, kBadIndex (of a normal or a material). Cost: linear.
+/// area lights lie within kCoordinateLimit, edges of area lights are not parallel, exactly the triangles with smooth
+/// materials have normals, and exactly those of materials with colours have colours. count_scene_image checks what depends on the grid.
+/// Errors: kBadEffects, kBadIndex (of a normal, a colour or a material). Cost: linear.
 [[nodiscard]] Status check_effects(const MeshView& mesh, const EffectsView& effects);
 
 }  // namespace gridiron

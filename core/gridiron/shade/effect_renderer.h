@@ -144,12 +144,21 @@ class EffectRenderer {
     static constexpr std::uint32_t kPixels = Store::kTilePixels;
     store_.work.add(Work::kColorGroup, kPixels / 4);
     store_.work.charge_to(Work::kColorGroup);
+    const bool is_srgb = scene().levels == static_cast<std::uint32_t>(ColorLevels::kSrgb);
+    if (is_srgb) store_.work.add(Work::kSrgbLevel, 3 * kPixels);
     const float per_step = 1.0f / (kSumSteps * static_cast<float>(static_cast<std::int32_t>(samples_per_pixel())));
     for (std::uint32_t i = 0; i < kPixels; ++i) {
-      const std::uint32_t red = level_of(store_.effects.sums[0][i], per_step);
-      const std::uint32_t green = level_of(store_.effects.sums[1][i], per_step);
-      const std::uint32_t blue = level_of(store_.effects.sums[2][i], per_step);
-      color[i] = red | green << 8 | blue << 16 | 0xFF000000u;
+      std::uint32_t pixel = 0xFF000000u;
+      for (std::uint32_t channel = 0; channel < 3; ++channel) {
+        float value = brightness_of(store_.effects.sums[channel][i], per_step);
+        if (is_srgb) {
+          store_.work.charge_to(Work::kSrgbLevel);
+          value = srgb_of(value);
+          store_.work.charge_to(Work::kColorGroup);
+        }
+        pixel |= level_of(value) << (8 * channel);
+      }
+      color[i] = pixel;
     }
     transfers_.note_stage(Stage::kPrimary);
   }
@@ -351,8 +360,7 @@ class EffectRenderer {
         return Status::kOk;
       }
     }
-    return finish_point(context, point, face, vector_of(found.behind), vector_of(ray.weight), *material,
-                        found.enters);
+    return finish_point(context, point, face, vector_of(found.behind), vector_of(ray.weight), *material, found.enters);
   }
 
   // Gives pending points their shading normals.
@@ -382,9 +390,22 @@ class EffectRenderer {
           point.is_pending = 0;
           const MaterialRecord* material = nullptr;
           GRIDIRON_TRY(find_material(pending.material & 0x7FFFFFFFu, material));
-          return finish_point(context, point, shading, vector_of(pending.behind), vector_of(pending.weight), *material,
-                              enters);
+          GRIDIRON_TRY(finish_point(context, point, shading, vector_of(pending.behind), vector_of(pending.weight),
+                                    *material, enters));
+          if constexpr (has(kVertexColors)) {
+            if (material->has_colors != 0) tint(point, normals.colors, w1, w2);
+          }
+          return Status::kOk;
         });
+  }
+
+  // Multiplies what a point scatters by the colour between its triangle's corners.
+  void tint(WavePoint& point, const PackedColor* colors, float w1, float w2) {
+    store_.work.add(Work::kVertexColor);
+    store_.work.charge_to(Work::kVertexColor);
+    const Vector3 color = (1.0f - w1 - w2) * unpacked_color(colors[0]) +
+                          (w1 * unpacked_color(colors[1]) + w2 * unpacked_color(colors[2]));
+    store(vector_of(point.lit.diffuse) * color, point.lit.diffuse);
   }
 
   // Finishes a point with its shading normal: makes the rays that leave it, and prepares its light.

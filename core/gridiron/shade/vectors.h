@@ -2,6 +2,7 @@
 // is the IEEE one in the order written. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/effect_records.h>
 #include <gridiron/base/lanes.h>
 
 #include <bit>
@@ -42,6 +43,16 @@ constexpr GRIDIRON_INLINE void store(Vector3 a, float* target) {
 }
 [[nodiscard]] constexpr GRIDIRON_INLINE float dot(Vector3 a, Vector3 b) {
   return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+
+/// @returns the colour of a word, each channel 0..1.
+[[nodiscard]] GRIDIRON_INLINE Vector3 unpacked_color(PackedColor word) {
+  const auto channel = [word](std::uint32_t index) {
+    const std::uint32_t steps = word >> (kColorBits * index) & kColorSteps;
+    const float root = static_cast<float>(static_cast<std::int32_t>(steps)) * (1.0f / 1023.0f);
+    return root * root;
+  };
+  return {channel(0), channel(1), channel(2)};
 }
 
 /// a / |a|, its length 1 within 2^-21, for any finite size of a. The zero vector stays zero, so that a dot product with

@@ -69,8 +69,8 @@ inline constexpr WorkKind kSharedWork[] = {
     {Work::kAreaPlace, "area_place"}, {Work::kLightSample, "light_sample"}, {Work::kHighlight, "highlight"},
     {Work::kOcclusionRay, "occlusion_ray"}, {Work::kMirrorRay, "mirror_ray"}, {Work::kRefractedRay, "refracted_ray"},
     {Work::kEnvironmentLookup, "environment_lookup"}, {Work::kColorAdded, "color_added"},
-    {Work::kColorGroup, "color_group"}, {Work::kGetIssue, "get_issue"}, {Work::kPutIssue, "put_issue"},
-    {Work::kWait, "wait"}};
+    {Work::kColorGroup, "color_group"}, {Work::kVertexColor, "vertex_color"}, {Work::kSrgbLevel, "srgb_level"},
+    {Work::kGetIssue, "get_issue"}, {Work::kPutIssue, "put_issue"}, {Work::kWait, "wait"}};
 // clang-format on
 
 /// Whether a name stands in none of these rows.

@@ -97,25 +97,27 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(75),   386.3},  // environment_lookup, of effects
     {WorkId(76),    69.4},  // color_added, of effects
     {WorkId(77),   193.1},  // color_group, of effects
-    {WorkId(81),   387.8},  // packet_start
-    {WorkId(82),    23.0},  // pass_slope
-    {WorkId(83),    15.7},  // mailbox_group
-    {WorkId(84),   422.6},  // pass_group, not in `dense`
-    {WorkId(85),   407.9},  // pass_square
-    {WorkId(86),   239.0},  // macro_slice_step
-    {WorkId(87),    13.9},  // macro_row
-    {WorkId(88),    28.8},  // macro_cell_step
-    {WorkId(89),   337.7},  // macro_cell_visit
-    {WorkId(90),   241.4},  // slice_step
-    {WorkId(91),    23.7},  // cell_row
-    {WorkId(92),     7.9},  // cell_step
-    {WorkId(93),    22.0},  // cell_visit
-    {WorkId(94),   368.9},  // triangle_batch
-    {WorkId(95),    39.2},  // mailbox_probe
-    {WorkId(96),    25.6},  // reach_group
-    {WorkId(97),   121.8},  // reach_test, not in `dense`
-    {WorkId(98),   357.5},  // footprint_group, not in `dense`
-    {WorkId(99),    10.6},  // cell_bound_step, not in `dense`
+    {WorkId(78),    60.0},  // vertex_color, of effects
+    {WorkId(79),    60.0},  // srgb_level, of effects
+    {WorkId(83),   387.8},  // packet_start
+    {WorkId(84),    23.0},  // pass_slope
+    {WorkId(85),    15.7},  // mailbox_group
+    {WorkId(86),   422.6},  // pass_group, not in `dense`
+    {WorkId(87),   407.9},  // pass_square
+    {WorkId(88),   239.0},  // macro_slice_step
+    {WorkId(89),    13.9},  // macro_row
+    {WorkId(90),    28.8},  // macro_cell_step
+    {WorkId(91),   337.7},  // macro_cell_visit
+    {WorkId(92),   241.4},  // slice_step
+    {WorkId(93),    23.7},  // cell_row
+    {WorkId(94),     7.9},  // cell_step
+    {WorkId(95),    22.0},  // cell_visit
+    {WorkId(96),   368.9},  // triangle_batch
+    {WorkId(97),    39.2},  // mailbox_probe
+    {WorkId(98),    25.6},  // reach_group
+    {WorkId(99),   121.8},  // reach_test, not in `dense`
+    {WorkId(100),   357.5},  // footprint_group, not in `dense`
+    {WorkId(101),    10.6},  // cell_bound_step, not in `dense`
 });
 
 /// A command: from where core counts it to the next kind of work, and its end in a wait.

@@ -98,7 +98,8 @@ const Damage kDamages[] = {
     EFFECTS_DAMAGE("surfaces_offset", surfaces_offset_bytes, r.surfaces_offset_bytes = ~std::uint64_t{127}),
     EFFECTS_DAMAGE("normals_offset", normals_offset_bytes, r.normals_offset_bytes += 1),
     EFFECTS_DAMAGE("environment_offset", environment_offset_bytes, r.environment_offset_bytes += 768),
-    EFFECTS_DAMAGE("effects_reserved", reserved, r.reserved[7] = 1),
+    EFFECTS_DAMAGE("effects_reserved", reserved, r.reserved[6] = 1),
+    EFFECTS_DAMAGE("levels", levels, r.levels = 2),
 
     MATERIAL_DAMAGE("diffuse_negative", diffuse, r.diffuse[1] = -0.125f),
     MATERIAL_DAMAGE("diffuse_nan", diffuse, r.diffuse[2] = kNan),
@@ -114,7 +115,8 @@ const Damage kDamages[] = {
     MATERIAL_DAMAGE("index_small", index, r.index = 0.0625f),
     MATERIAL_DAMAGE("index_great", index, r.index = kInfinity),
     MATERIAL_DAMAGE("smooth_two", is_smooth, r.is_smooth = 2),
-    MATERIAL_DAMAGE("material_reserved", reserved, r.reserved = 1),
+    MATERIAL_DAMAGE("flat_with_colors", has_colors, r.is_smooth = 0),
+    MATERIAL_DAMAGE("colors_two", has_colors, r.has_colors = 2),
 
     POINT_DAMAGE("point_becomes_area", samples, r.samples = 4),
     POINT_DAMAGE("point_nan", corner, r.corner[1] = kNan),
@@ -151,7 +153,7 @@ const Damage kDamages[] = {
     NORMAL_DAMAGE("normal_long", n, r.n[2][0] = 1.0f),
     NORMAL_DAMAGE("normal_zero", n, std::memset(r.n[1], 0, sizeof(r.n[1]))),
     NORMAL_DAMAGE("normal_nan", n, r.n[0][1] = kNan),
-    NORMAL_DAMAGE("normal_reserved", reserved, r.reserved[2] = 1),
+    NORMAL_DAMAGE("color_beyond_its_bits", colors, r.colors[2] |= 1u << 30),
     TEXEL_DAMAGE("texel_negative", 0, r.x = -1.0f),
     TEXEL_DAMAGE("texel_infinite", 12, r.y = kInfinity),
     TEXEL_DAMAGE("texel_nan_in_the_last_block", 768 * 5 + 96 + 12, r.z = kNan),

@@ -78,6 +78,7 @@ inline const char* broken_effects(std::span<const std::byte> bytes, const SceneI
     if (bounces && material.transmittance > 0) call |= kRefraction;
     if ((point || area) && material.specular > 0 && material.shine > 0) call |= kHighlights;
     if (material.is_smooth != 0) call |= kSmoothNormals;
+    if (material.has_colors != 0) call |= kVertexColors;
     if ((surface.normals != kNoNormals) != (material.is_smooth != 0)) return "surface.normals";
     if (surface.normals == kNoNormals) continue;
     ++smooth_count;
@@ -87,6 +88,9 @@ inline const char* broken_effects(std::span<const std::byte> bytes, const SceneI
     for (const auto& n : normal.n) {
       const double length = std::sqrt(double{n[0]} * n[0] + double{n[1]} * n[1] + double{n[2]} * n[2]);
       if (!(std::fabs(length - 1) < 0.001)) return "normal.n";
+    }
+    for (const PackedColor color : normal.colors) {
+      if (material.has_colors != 0 ? color >= 1u << 30 : color != 0) return "normal.colors";
     }
   }
   if (smooth_count != e.smooth_triangle_count) return "smooth_triangle_count";
@@ -107,6 +111,7 @@ inline const char* broken_effects(std::span<const std::byte> bytes, const SceneI
     }
     if (bad(material.specular, 0, 1) || bad(material.transmittance, 0, 1)) return "shares";
     if (bad(material.shine, 0, 1e5f) || bad(material.index, 0.1f, 10) || material.is_smooth > 1) return "material";
+    if (material.has_colors > material.is_smooth) return "material.has_colors";
   }
   const std::uint32_t blocks = environment_blocks(e.environment_width);
   for (std::uint32_t i = 0; e.environment_width != 0 && i < 6 * blocks * blocks; ++i) {

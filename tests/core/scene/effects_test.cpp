@@ -2,6 +2,7 @@
 #include <gridiron/base/records.h>
 #include <gridiron/scene/effect_rules.h>
 #include <gridiron/scene/effects.h>
+#include <gridiron/shade/vectors.h>
 
 #include "core/scene/test_effects.h"
 #include "support/test_headers.h"
@@ -91,7 +92,18 @@ const Change kChanges[] = {
     CHANGE("smooth_without_normals", kBadEffects, s.triangle_normals[1] = UVec3(kNoNormals)),
     CHANGE("smooth_without_any_normals", kBadEffects, s.triangle_normals.clear()),
     CHANGE("flat_with_normals", kBadEffects, s.triangle_normals[0] = {0, 1, 2}),
-    CHANGE("flat_without_any_normals", kOk, s.triangle_normals.clear(); s.triangle_materials.assign(4, 0)),
+    CHANGE("flat_without_any_normals", kOk, s.triangle_normals.clear(); s.triangle_colors.clear();
+           s.triangle_materials.assign(4, 0)),
+    CHANGE("color_not_there", kBadIndex, s.triangle_colors[1].z = 2),
+    CHANGE("color_of_one_corner_missing", kBadIndex, s.triangle_colors[1].y = kNoNormals),
+    CHANGE("colored_without_colors", kBadEffects, s.triangle_colors[1] = UVec3(kNoNormals)),
+    CHANGE("colored_without_any_colors", kBadEffects, s.triangle_colors.clear()),
+    CHANGE("colors_too_few", kBadEffects, s.triangle_colors.pop_back()),
+    CHANGE("colors_of_no_colored_material", kBadEffects, s.triangle_colors[0] = {0, 1, 0}),
+    CHANGE("colored_and_flat", kBadEffects, s.materials[2].smooth_normals = false),
+    CHANGE("uncolored", kOk, s.triangle_colors.clear(); s.materials[1].vertex_colors = false),
+    CHANGE("vertex_color_above", kBadEffects, s.colors[1].y = 1.001f),
+    CHANGE("vertex_color_nan", kBadEffects, s.colors[0].z = kNan),
     CHANGE("normal_short", kBadEffects, s.normals[1] *= 0.998f),
     CHANGE("normal_nearly_unit", kOk, s.normals[1] *= 0.9995f),
     CHANGE("normal_long", kBadEffects, s.normals[1] *= 1.002f),
@@ -152,11 +164,13 @@ const Call kCalls[] = {
     CALL("opaque", kRefraction, s.materials[1].transmittance = 0),
     CALL("transparent_only", kHighlights, s.materials[1].ks = 0),
     CALL("neither", kReflection | kRefraction | kHighlights, s.materials[1].ks = s.materials[1].transmittance = 0),
-    CALL("unused", kReflection | kRefraction | kHighlights | kSmoothNormals, s.triangle_materials.assign(4, 0)),
+    CALL("unused", kReflection | kRefraction | kHighlights | kSmoothNormals | kVertexColors,
+         s.triangle_materials.assign(4, 0)),
     CALL("used_last", 0, s.triangle_materials = (std::vector<std::uint16_t>{0, 0, 0, 1})),
     CALL("no_occlusion", kAmbientOcclusion, s.settings.occlusion_samples = 0),
     CALL("no_environment", kEnvironment, s.set_environment(0)),
-    CALL("flat", kSmoothNormals, s.materials[1].smooth_normals = false),
+    CALL("flat", kSmoothNormals | kVertexColors, s.materials[1].smooth_normals = s.materials[1].vertex_colors = false),
+    CALL("uncolored", kVertexColors, s.materials[1].vertex_colors = false),
     CALL("no_shine", kHighlights, s.materials[1].shine = 0),
     CALL("one_sample", kMultisampling, s.settings.samples_per_pixel = 1),
 };
@@ -181,6 +195,7 @@ TEST(ScaledMaterial, IsDividedWhereItsSharesExceedOne) {
   EXPECT_EQ(matte.transmittance, 0.0f);
   EXPECT_EQ(matte.index, 1.0f);
   EXPECT_EQ(matte.is_smooth, 0u);
+  EXPECT_EQ(matte.has_colors, 0u);
 
   const MaterialRecord glass = scaled_material(scene.materials[1]);
   const float sum = (0.7f + 0.6f) + 0.9f;
@@ -191,6 +206,27 @@ TEST(ScaledMaterial, IsDividedWhereItsSharesExceedOne) {
   EXPECT_EQ(glass.index, 1.5f);
   EXPECT_EQ(glass.shine, 20.0f);
   EXPECT_EQ(glass.is_smooth, 1u);
+  EXPECT_EQ(glass.has_colors, 1u);
+}
+
+// Every value comes back within half a step of its root, and what can be held comes back exactly.
+TEST(PackedColors, HoldTheRootOfAColor) {
+  EXPECT_EQ(packed_color({0, 0, 0}), 0u);
+  EXPECT_EQ(packed_color({1, 1, 1}), (1u << 30) - 1);
+  EXPECT_EQ(packed_color({1, 0, 0}), 1023u);
+  EXPECT_EQ(packed_color({0, 0, 1}), 1023u << 20);
+  for (std::uint32_t steps = 0; steps <= kColorSteps; ++steps) {
+    const PackedColor word = steps | (kColorSteps - steps) << 10 | (steps / 2) << 20;
+    const Vector3 color = unpacked_color(word);
+    EXPECT_EQ(packed_color({color.x, color.y, color.z}), word);
+  }
+  for (int i = 0; i <= 1000; ++i) {
+    const float value = static_cast<float>(i) / 1000.0f;
+    const Vector3 color = unpacked_color(packed_color({0, value, 0}));
+    EXPECT_NEAR(std::sqrt(color.y), std::sqrt(value), 0.51 / 1023) << value;
+    EXPECT_EQ(color.x, 0.0f);
+    EXPECT_EQ(color.z, 0.0f);
+  }
 }
 
 TEST(ScaledMaterial, NeverReflectsMoreThanComes) {

@@ -18,6 +18,8 @@ struct TestEffects {
   std::vector<std::uint16_t> triangle_materials;
   std::vector<Vec3> normals;
   std::vector<UVec3> triangle_normals;
+  std::vector<Vec3> colors;
+  std::vector<UVec3> triangle_colors;
   std::vector<Light> lights;
   std::vector<Vec3> faces[6];
   EffectsView settings;  ///< all of the view that is no array
@@ -29,6 +31,8 @@ struct TestEffects {
     view.triangle_materials = triangle_materials;
     view.normals = normals;
     view.triangle_normals = triangle_normals;
+    view.colors = colors;
+    view.triangle_colors = triangle_colors;
     view.lights = lights;
     for (std::size_t face = 0; face < 6; ++face) view.environment_faces[face] = faces[face];
     return view;
@@ -62,10 +66,13 @@ inline TestEffects all_effects(std::uint32_t environment_width = 3) {
   glass.transmittance = 0.9f;
   glass.index = 1.5f;
   glass.smooth_normals = true;
+  glass.vertex_colors = true;
   scene.materials = {matte, glass, glass};
   scene.triangle_materials = {0, 1, 1, 0};
   scene.normals = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0, -0.8f, 0.6f}};
   scene.triangle_normals = {UVec3(kNoNormals), {0, 1, 2}, {2, 2, 1}, UVec3(kNoNormals)};
+  scene.colors = {{1, 0.5f, 0}, {0.25f, 0, 1}};
+  scene.triangle_colors = {UVec3(kNoNormals), {0, 1, 0}, {1, 1, 0}, UVec3(kNoNormals)};
   Light point;
   point.corner = {2, 3, 3.5f};
   point.color = {1, 0.5f, 0.25f};
@@ -79,6 +86,7 @@ inline TestEffects all_effects(std::uint32_t environment_width = 3) {
   scene.settings.background = {0.25f, 0.5f, 0.75f};
   scene.settings.recursion_depth = 3;
   scene.settings.samples_per_pixel = 4;
+  scene.settings.levels = ColorLevels::kSrgb;
   scene.settings.occlusion_samples = 8;
   scene.settings.occlusion_radius = 0.5f;
   scene.set_environment(environment_width);

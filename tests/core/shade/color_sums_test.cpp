@@ -90,23 +90,43 @@ TEST(AddSteps, OrderDoesNotMatter) {
   EXPECT_GT(not_full, 100u);
 }
 
+std::uint32_t level_of_sum(std::uint32_t sum, float per_step) { return level_of(brightness_of(sum, per_step)); }
+
 TEST(LevelOf, EveryLevelAtItsPlace) {
   for (const std::uint32_t samples : {1u, 4u, 16u}) {
     const float per_step = 1.0f / (kSumSteps * static_cast<float>(samples));
-    EXPECT_EQ(level_of(0, per_step), 0u);
-    EXPECT_EQ(level_of(kFull, per_step), 255u);
-    EXPECT_EQ(level_of(samples << 20, per_step), 255u);
+    EXPECT_EQ(level_of_sum(0, per_step), 0u);
+    EXPECT_EQ(level_of_sum(kFull, per_step), 255u);
+    EXPECT_EQ(level_of_sum(samples << 20, per_step), 255u);
     for (std::uint32_t level = 0; level <= 255; ++level) {
       const double middle = level * double(samples << 20) / 255.0;
       const double half = 0.5 * double(samples << 20) / 255.0;
-      EXPECT_EQ(level_of(static_cast<std::uint32_t>(middle + 0.5), per_step), level);
+      EXPECT_EQ(level_of_sum(static_cast<std::uint32_t>(middle + 0.5), per_step), level);
       // Two steps off a threshold floats are sure of it.
       if (level < 255) {
         const double slack = 2.0 * samples;
-        EXPECT_EQ(level_of(static_cast<std::uint32_t>(middle + half - slack), per_step), level);
-        EXPECT_EQ(level_of(static_cast<std::uint32_t>(middle + half + slack), per_step), level + 1);
+        EXPECT_EQ(level_of_sum(static_cast<std::uint32_t>(middle + half - slack), per_step), level);
+        EXPECT_EQ(level_of_sum(static_cast<std::uint32_t>(middle + half + slack), per_step), level + 1);
       }
     }
+  }
+}
+
+// 0 and 1 stay what they are, it never falls, and it is the curve of the standard within 2^-20.
+TEST(Srgb, IsTheCurveOfTheStandard) {
+  EXPECT_EQ(srgb_of(0.0f), 0.0f);
+  EXPECT_EQ(srgb_of(1.0f), 1.0f);
+  EXPECT_EQ(level_of(srgb_of(1.0f)), 255u);
+  EXPECT_EQ(level_of(srgb_of(0.2140411f)), 128u) << "what the eye takes for the middle";
+  float last = 0.0f;
+  for (std::uint32_t step = 0; step <= 1u << 20; ++step) {
+    const float linear = static_cast<float>(step) * 0x1p-20f;
+    const double exact = linear <= 0.0031308f ? 12.92 * double{linear} : 1.055 * std::pow(double{linear}, 1 / 2.4) - 0.055;
+    const float found = srgb_of(linear);
+    ASSERT_NEAR(found, exact, 0x1p-20) << linear;
+    ASSERT_GE(found, last - 0x1p-22f) << linear;
+    ASSERT_LE(level_of(found), 255u);
+    last = found;
   }
 }
 
@@ -122,7 +142,7 @@ TEST(LevelOf, SamplesAverage) {
       mean += double{value} / 16.0;
     }
     const double level = mean * 255.0;
-    const auto found = static_cast<double>(level_of(sum, 1.0f / (kSumSteps * 16.0f)));
+    const auto found = static_cast<double>(level_of_sum(sum, 1.0f / (kSumSteps * 16.0f)));
     EXPECT_LE(std::fabs(found - level), 0.5 + 255.0 * 0x1p-20);
   }
 }

@@ -46,7 +46,7 @@ struct LightRay {
 struct Shares {
   dvec3 color, diffuse;
   double specular, transmittance, shine, index;
-  bool is_smooth;
+  bool is_smooth, has_colors;
 };
 
 // Where a ray ends, and what is needed to shade there.
@@ -72,7 +72,8 @@ class Tracer {
       const double scale = std::max(1.0, double{material.kd} + material.ks + material.transmittance);
       const dvec3 color(material.color);
       shares_.push_back({color, material.kd / scale * color, material.ks / scale, material.transmittance / scale,
-                         material.shine, material.index_of_refraction, material.smooth_normals});
+                         material.shine, material.index_of_refraction, material.smooth_normals,
+                         material.vertex_colors});
     }
   }
 
@@ -97,11 +98,23 @@ class Tracer {
       seen->depth = hit->t * glm::length(ray.ray.dir);
     }
     const Surface surface = surface_at(ray.ray, *hit);
-    const Shares& shares = shares_[scene_.geometry.triangle_materials[hit->id]];
+    const Shares shares = shares_at(*hit);
     dvec3 light = from_lights(surface, shares, ray.path);
     if (scene_.ambient_occlusion) light += ambient(surface, shares, ray.path);
     if (ray.depth < scene_.recursion_depth) light += from_further_rays(ray, surface, shares);
     return light;
+  }
+
+  // The material of a hit, its diffuse share multiplied by the corners' colour.
+  Shares shares_at(const ReferenceHit& hit) const {
+    Shares shares = shares_[scene_.geometry.triangle_materials[hit.id]];
+    if (!shares.has_colors) return shares;
+    dvec3 color(0.0);
+    for (int k = 0; k < 3; ++k) {
+      color += hit.weights[k] * dvec3(scene_.geometry.colors[scene_.geometry.triangle_colors[hit.id][k]]);
+    }
+    shares.diffuse *= color;
+    return shares;
   }
 
   // Surfaces.
@@ -277,10 +290,15 @@ class Tracer {
   ReferenceCounts counts_;
 };
 
-std::uint32_t rounded(const dvec3& linear) {
+double srgb(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+std::uint32_t rounded(const dvec3& linear, ColorLevels levels) {
   std::uint32_t color = 0xFF000000u;
   for (int channel = 0; channel < 3; ++channel) {
-    const double value = 255.0 * std::clamp(linear[channel], 0.0, 1.0) + 0.5;
+    const double within = std::clamp(linear[channel], 0.0, 1.0);
+    const double value = 255.0 * (levels == ColorLevels::kSrgb ? srgb(within) : within) + 0.5;
     color |= static_cast<std::uint32_t>(value) << (8 * channel);
   }
   return color;
@@ -357,7 +375,7 @@ ReferencePicture render_reference(const tool::SceneDescription& scene, std::uint
           }
         }
         picture.linear[index] = sum / double(scene.samples_per_pixel);
-        picture.color[index] = rounded(picture.linear[index]);
+        picture.color[index] = rounded(picture.linear[index], scene.levels);
       }
     }
     counts = tracer.counts();

@@ -47,6 +47,9 @@ void write_surfaces(const MeshView& mesh, const EffectsView& effects, const Grid
       NormalRecord normal{};
       for (int corner = 0; corner < 3; ++corner) {
         copy(normal.n[corner], effects.normals[effects.triangle_normals[i][corner]]);
+        if (effects.materials[surface.material].vertex_colors) {
+          normal.colors[corner] = packed_color(effects.colors[effects.triangle_colors[i][corner]]);
+        }
       }
       store(image, normals_at, normal);
       normals_at += sizeof(NormalRecord);
