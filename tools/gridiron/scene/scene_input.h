@@ -6,7 +6,6 @@
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/work_sharing.h>
 #include <gridiron/image/scene_image.h>
-#include <gridiron/scene/mesh.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -19,6 +18,7 @@
 #include "base/stopwatch.h"
 #include "files/file_kind.h"
 #include "files/input_file.h"
+#include "import/mesh.h"
 #include "scene_request.h"
 #include "scene_text/scene_description.h"
 #include "scene_text/scene_effects.h"
@@ -26,14 +26,6 @@
 #include "view.h"
 
 namespace gridiron::tool {
-
-/// Triangles as read, in the input's order after fanning.
-struct Mesh {
-  std::vector<Vec3> vertices;
-  std::vector<UVec3> triangles;
-
-  [[nodiscard]] MeshView view() const { return {vertices, triangles}; }
-};
 
 /// A scene image as read and validated.
 struct PackedScene {
