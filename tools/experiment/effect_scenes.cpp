@@ -144,9 +144,12 @@ EffectScene make_effect_scene(std::string_view key) {
 
 tool::SceneInput input_of(const EffectScene& scene) {
   tool::SceneDescription description = scene.description;
-  tool::TextScene text{description.view, tool::take_scene_effects(description), {}, 0, {}};
+  tool::SceneEffects effects = tool::take_scene_effects(description);
   tool::Mesh mesh{std::move(description.geometry.vertices), std::move(description.geometry.triangles)};
-  return {.path = scene.key, .content = std::move(mesh), .load_seconds = {}, .text = std::move(text)};
+  return {.path = scene.key,
+          .content = std::move(mesh),
+          .effects = std::move(effects),
+          .text = tool::TextScene{description.view, {}, 0, {}}};
 }
 
 std::uint32_t called_for(const EffectScene& scene) {

@@ -178,7 +178,7 @@ std::vector<TracedRay> trace_secondary_rays(PreparedEffectFrame& frame) {
   require(render_tiles<ChipLanes>(*store, core, memory.record_address,
                                   SpillRegion{memory.spill.address, memory.spill_bytes_per_core}),
           frame);
-  const std::vector<Light>& lights = frame.input.text->effects.lights;
+  const std::vector<Light>& lights = frame.input.effects->lights;
   for (TracedRay& ray : notes.rays) {
     ray.from_light =
         ray.kind == RayKind::kShadow && std::ranges::find(lights, ray.origin, &Light::corner) != lights.end();

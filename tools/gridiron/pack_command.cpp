@@ -42,7 +42,7 @@ SceneRequest completed(const PackRequest& request, const KnownScene& known) {
 // Of a frame of the usual layout in the machine's largest store.
 StoreFacts store_of(const sim::MachineProfile& machine, const Configuration& configuration, const SceneInput& input) {
   const sim::StoreSize store = largest_store(machine);
-  return input.text ? effect_store_facts(store, configuration.packet_width)
+  return input.effects ? effect_store_facts(store, configuration.packet_width)
                     : usual_store_facts(store, configuration.packet_width);
 }
 
@@ -71,8 +71,8 @@ void run_command(const PackRequest& request) {
                               .budget_bytes = image_budget_bytes(machine, 1, 1, 1, kUsualTileWidth, spill_bytes),
                               .engine = store.engine,
                               .leaf_triangles = store.leaf_triangles};
-  const EffectsView of_text = input.text ? input.text->effects.view() : EffectsView{};
-  const EffectsView* effects = input.text ? &of_text : nullptr;
+  const EffectsView of_text = input.effects ? input.effects->view() : EffectsView{};
+  const EffectsView* effects = input.effects ? &of_text : nullptr;
   sim::HostTeam team(mesh->triangles.size() < kManyTreeTriangles ? 1 : std::thread::hardware_concurrency());
   const WorkSharing sharing = team.sharing();
   const GridChoice choice = choose_grid(input, *mesh, scene, limits, effects, sharing);

@@ -148,6 +148,30 @@ void print_timing(const RenderPlan& plan, const sim::FrameTiming& timing) {
               core_cycles > 0 ? 100 * wait_cycles_of(timing) / core_cycles : 0.0);
 }
 
+// Shares of the cores' cycles, for scenes with effects. Every eye ray of a pixel has its part in each.
+void print_stages(const sim::FrameTiming& timing, std::uint32_t samples) {
+  const struct {
+    gridiron::Stage stage;
+    const char* words;
+  } parts[] = {{gridiron::Stage::kPrimary, "eye rays"},          {gridiron::Stage::kSurface, "surfaces"},
+               {gridiron::Stage::kShadow, "lights and shadows"}, {gridiron::Stage::kOcclusion, "ambient occlusion"},
+               {gridiron::Stage::kBounce, "mirrors and glass"},  {gridiron::Stage::kEnvironment, "environment"}};
+  const auto sums = stage_sums(timing.cores);
+  const auto cycles_of = [](const sim::StageTiming& stage) { return stage.compute_cycles + stage.wait_cycles; };
+  double total = 0;
+  for (const sim::StageTiming& stage : sums) total += cycles_of(stage);
+  if (!(total > 0)) return;
+  std::string line;
+  for (const auto& part : parts) {
+    const double cycles = cycles_of(sums[static_cast<std::size_t>(part.stage)]);
+    if (cycles == 0) continue;
+    char words[64];
+    std::snprintf(words, sizeof words, "%s%s %.0f %%", line.empty() ? "" : ", ", part.words, 100 * cycles / total);
+    line += words;
+  }
+  std::printf("of these cycles: %s; %s a pixel\n", line.c_str(), words_of_count(samples, "sample").c_str());
+}
+
 Picture<std::uint32_t> plane_words(const FrameMemory& frame, const RenderPlan& plan, const sim::MemoryRegion& plane) {
   return words_of_plane(frame.record, plane.bytes, plan.tile);
 }
@@ -230,6 +254,7 @@ void run_command(const RenderRequest& request) {
   if (!plan.tile) tell_note(input.path, unseen_note(*memory, repeated.result, plan.mode));
   print_picture(plan, color, repeated.hashes.color);
   if (has_time(plan)) print_timing(plan, timing);
+  if (has_time(plan) && plan.shading == Shading::kScene) print_stages(timing, frame.image.effects.samples_per_pixel);
   if (worst) print_worst_tiles(*worst);
   const std::string least = plan.repeats > 1 ? ", the least of " + std::to_string(plan.repeats) : "";
   std::printf("host: %.3f s to load, %.3f s to build, %.3f s to render on %s (%.3f s of processor time)%s\n",

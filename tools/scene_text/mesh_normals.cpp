@@ -11,14 +11,13 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
-// Scales by the largest component first, so that no square leaves the range of doubles. @returns 0 for 0.
-DVec3 unit(const DVec3& vector) {
+}  // namespace
+
+DVec3 unit_or_zero(const DVec3& vector) {
   const double largest = std::max({std::fabs(vector.x), std::fabs(vector.y), std::fabs(vector.z)});
   if (!(largest > 0) || !std::isfinite(largest)) return DVec3(0.0);
   return glm::normalize(vector / largest);
 }
-
-}  // namespace
 
 MeshNormals make_mesh_normals(std::span<const Vec3> vertices, std::span<const UVec3> triangles) {
   std::vector<DVec3> sums(vertices.size(), DVec3(0.0));
@@ -36,7 +35,7 @@ MeshNormals make_mesh_normals(std::span<const Vec3> vertices, std::span<const UV
   MeshNormals result;
   std::vector<std::uint32_t> index_of_vertex(vertices.size(), kNone);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const DVec3 normal = unit(sums[i]);
+    const DVec3 normal = unit_or_zero(sums[i]);
     if (normal == DVec3(0.0)) continue;
     index_of_vertex[i] = static_cast<std::uint32_t>(result.normals.size());
     result.normals.emplace_back(normal);
@@ -46,7 +45,8 @@ MeshNormals make_mesh_normals(std::span<const Vec3> vertices, std::span<const UV
     UVec3 indices(index_of_vertex[triangle.x], index_of_vertex[triangle.y], index_of_vertex[triangle.z]);
     if (indices.x == kNone || indices.y == kNone || indices.z == kNone) {
       const DVec3 origin(vertices[triangle.x]);
-      const DVec3 own = unit(glm::cross(DVec3(vertices[triangle.y]) - origin, DVec3(vertices[triangle.z]) - origin));
+      const DVec3 own =
+          unit_or_zero(glm::cross(DVec3(vertices[triangle.y]) - origin, DVec3(vertices[triangle.z]) - origin));
       const auto index = static_cast<std::uint32_t>(result.normals.size());
       result.normals.emplace_back(own == DVec3(0.0) ? DVec3(0, 0, 1) : own);
       for (int corner = 0; corner < 3; ++corner) {

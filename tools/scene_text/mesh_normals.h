@@ -9,6 +9,9 @@
 
 namespace gridiron::tool {
 
+/// @returns the vector of length 1 in its direction, 0 for the vector 0; whatever its length, no square overflows.
+[[nodiscard]] DVec3 unit_or_zero(const DVec3& vector);
+
 struct MeshNormals {
   std::vector<Vec3> normals;     ///< unit
   std::vector<UVec3> triangles;  ///< one per triangle, of indices into normals

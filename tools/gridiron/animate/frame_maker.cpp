@@ -100,14 +100,6 @@ void choose_builder(const AnimateRequest& request, RenderPlan& plan) {
   }
 }
 
-void require_renderable(const SceneInput& input) {
-  const Mesh* const mesh = std::get_if<Mesh>(&input.content);
-  if (mesh == nullptr) return;
-  GridNeed need{};
-  const Status status = count_scene_image(mesh->view(), {.lambda = 1e-6f}, need);
-  if (status != Status::kOk) input_error(input.path, words_of(status));
-}
-
 std::uint64_t hash_of_view(const Camera& camera, std::uint32_t width, std::uint32_t height) {
   const float floats[] = {camera.eye.x, camera.eye.y, camera.eye.z, camera.at.x, camera.at.y,
                           camera.at.z,  camera.up.x,  camera.up.y,  camera.up.z, camera.tan_half_fov};

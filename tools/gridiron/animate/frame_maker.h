@@ -72,9 +72,6 @@ void check_foreseen(const AnimateRequest& request, const std::filesystem::path& 
 /// Says in a plan what builds the tree. Errors: Failure (kUsage) if that is not possible.
 void choose_builder(const AnimateRequest& request, RenderPlan& plan);
 
-/// Throws Failure (kBadInput) if a mesh or text scene cannot be rendered at all.
-void require_renderable(const SceneInput& input);
-
 /// @returns the hash of a camera, and of the size of its picture.
 [[nodiscard]] std::uint64_t hash_of_view(const Camera& camera, std::uint32_t width, std::uint32_t height);
 

@@ -65,12 +65,14 @@ class Series final : public FrameMaker {
   [[nodiscard]] ViewRequest view_of(const SeriesFrame& frame) const;
   void require_size(const SeriesFrame& frame);
   void frame_together();
+  [[nodiscard]] PointSource points_of(const std::vector<SeriesFrame*>& frames);
 
   const AnimateRequest& animate_;
   const RenderRequest& request_;
   std::optional<ViewRequest> camera_;
   std::vector<SeriesFrame> frames_;
-  std::optional<CountPair> size_;  // of all pictures
+  std::optional<CountPair> size_;   // of all pictures
+  std::optional<LookStage> stage_;  // of all frames, where they have a look: its ground stays where it is
   bool has_told_ = false;
   std::optional<VertexOrder> vertex_order_;  // meshes of one topology have one
 };
@@ -124,6 +126,21 @@ void Series::prepare() {
     if (frame.is_read || frame.kind == SceneKind::kMesh) require_size(frame);
   }
   frame_together();
+  if (!request_.scene.look.is_given()) return;
+  std::vector<SeriesFrame*> frames;
+  for (SeriesFrame& frame : frames_) frames.push_back(&frame);
+  stage_ = stage_of(points_of(frames));
+}
+
+PointSource Series::points_of(const std::vector<SeriesFrame*>& frames) {
+  return [this, frames](const PointVisitor& visitor) {
+    for (SeriesFrame* const frame : frames) {
+      SceneInput input = read(*frame);
+      require_renderable(input);
+      visit_points(std::get<Mesh>(input.content).view(), visitor);
+      if (is_stream(frame->input)) frame->scene = std::move(input);
+    }
+  };
 }
 
 void Series::frame_together() {
@@ -133,16 +150,8 @@ void Series::frame_together() {
     if (!view.eye || !view.at) unframed.push_back(&frame);
   }
   if (unframed.empty()) return;
-  const PointSource points = [this, &unframed](const PointVisitor& visitor) {
-    for (SeriesFrame* const frame : unframed) {
-      SceneInput input = read(*frame);
-      require_renderable(input);
-      visit_points(std::get<Mesh>(input.content).view(), visitor);
-      if (is_stream(frame->input)) frame->scene = std::move(input);
-    }
-  };
   ViewRequest view = view_of(*unframed.front());
-  const Camera camera = complete_view(view, static_cast<double>(size_->x) / size_->y, points);
+  const Camera camera = complete_view(view, static_cast<double>(size_->x) / size_->y, points_of(unframed));
   view.eye = camera.eye;
   view.at = camera.at;
   view.up = camera.up;
@@ -164,7 +173,7 @@ MadeFrame Series::make(std::size_t i, bool has_timeline, const FrameProgress& pr
   RenderRequest request = request_;
   request.scene.input = frame.input;
   request.view = frame.framed.value_or(request_.view);
-  RequestedFrame requested = complete_frame(request, std::move(input), camera_);
+  RequestedFrame requested = complete_frame(request, std::move(input), camera_, stage_ ? &*stage_ : nullptr);
   choose_builder(animate_, requested.plan);
   if (has_told_ && !request.scene.quiet) tell_notes(requested.input);
   if (!std::exchange(has_told_, true)) tell_frame_notes(request, requested);

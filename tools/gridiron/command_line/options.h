@@ -122,6 +122,9 @@ void require_own_streams(const std::vector<NamedFile>& inputs);
 void complete_scene(SceneRequest& scene, const std::string& machine,
                     const std::optional<std::filesystem::path>& camera = std::nullopt);
 
+/// Adds the options of a mesh's look.
+void add_look_options(CLI::App& app, LookRequest& look);
+
 // Each adds the options of a command that renders, and returns the function that completes its request.
 [[nodiscard]] Finish add_render(CLI::App& app);
 [[nodiscard]] Finish add_animate(CLI::App& app);

@@ -167,6 +167,7 @@ Finish add_render(CLI::App& app) {
   add_output_options(app, render);
   add_size(app, render.size, "picture in pixels (default: a text scene's own, else 1024x1024)");
   add_view_options(app, render);
+  add_look_options(app, render.scene.look);
   add_machine_options(app, render);
   add_algorithm_options(app, render);
   return [asked] {
@@ -217,6 +218,7 @@ Finish add_animate(CLI::App& app) {
   add_grid_options(app, render.scene, asked->machine);
   add_size(app, render.size, "pictures in pixels (default: the text scenes' own, else 1024x1024)");
   add_view_options(app, render);
+  add_look_options(app, render.scene.look);
   add_cores(app, render.cores);
   add_threads(app, render.threads, "no result depends on it");
   add_store(app, render.layout.store);
@@ -247,6 +249,7 @@ Finish add_job(CLI::App& app) {
   add_grid_options(app, render.scene, asked->machine);
   add_size(app, render.size, "picture in pixels (default: a text scene's own, else 1024x1024)");
   add_view_options(app, render);
+  add_look_options(app, render.scene.look);
   app.add_flag("--depth", render.depth_plane, "distances too");
   app.add_flag("--ids", render.ids_plane, "triangle ids too");
   add_count(app, "--cores", render.cores, 1, port::kMostBoardCores,

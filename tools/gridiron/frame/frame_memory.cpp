@@ -62,7 +62,7 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
   EffectsView view;
   const EffectsView* effects = nullptr;
   if (plan.shading == Shading::kScene) {
-    view = input.text->effects.view();
+    view = input.effects->view();
     effects = &view;
   }
   sim::HostTeam team(mesh.triangles.size() < kManyTreeTriangles ? 1 : plan.threads);

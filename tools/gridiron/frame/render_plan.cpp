@@ -17,13 +17,18 @@ using sim::StoreSize;
 
 Shading shading_of(const RenderRequest& request, const KnownScene& scene) {
   const Shading shading = request.shading.value_or(scene.has_effects ? Shading::kScene : Shading::kSimple);
-  if (shading != Shading::kScene) return shading;
-  if (!scene.is_read && scene.kind == SceneKind::kMesh) {
-    usage_error("--shading scene: a mesh has no lights and materials; text scenes (NFF) have");
+  if (shading != Shading::kScene) {
+    if (request.scene.look.is_given()) usage_error("--look and its parts: are of --shading scene");
+    return shading;
+  }
+  if (!scene.is_read && scene.kind == SceneKind::kMesh && !scene.has_effects) {
+    usage_error(
+        "--shading scene: a mesh has no lights and materials; --look studio gives it some, text scenes (NFF) have "
+        "their own");
   }
   if (scene.is_read && !scene.has_effects) {
     usage_error("--shading scene: " + request.scene.input.string() +
-                " has no lights and materials; text scenes (.nff) have");
+                " has no lights and materials; --look studio gives a mesh some, text scenes (.nff) have their own");
   }
   require_effects_of(request.accuracy);
   return shading;

@@ -8,6 +8,7 @@
 #include "base/words.h"
 #include "gridiron/device/store_facts.h"
 #include "gridiron/scene/hither.h"
+#include "gridiron/scene/scene_points.h"
 #include "view_bounds.h"
 
 namespace gridiron::tool {
@@ -37,6 +38,22 @@ void check_scene_view(const RenderRequest& request, const RequestedFrame& frame)
   check_hither(input, complete_view(frame.view, aspect, no_points), plan.width, plan.height);
 }
 
+// The mesh alone is framed, without its ground.
+void give_look(const RenderRequest& request, SceneInput& input, double aspect, const LookStage* stage,
+               ViewRequest& view) {
+  check_look(request.scene.look, known_scene(input).kind);
+  const PointSource points = [&input](const PointVisitor& visitor) {
+    visit_points(std::get<Mesh>(input.content).view(), visitor);
+  };
+  require_renderable(input);
+  const Camera camera = complete_view(view, aspect, points);
+  apply_look(input, request.scene.look, camera, stage != nullptr ? *stage : stage_of(points));
+  view.eye = camera.eye;
+  view.at = camera.at;
+  view.up = camera.up;
+  view.from.reset();
+}
+
 }  // namespace
 
 void take_grid_without_bounds(const RenderRequest& request, RequestedFrame& frame, std::span<const ViewRequest> views) {
@@ -60,14 +77,17 @@ void tell_frame_notes(const RenderRequest& request, const RequestedFrame& frame)
   tell_fewer_buffers(request, frame.plan);
 }
 
-RequestedFrame complete_frame(const RenderRequest& request, SceneInput input,
-                              const std::optional<ViewRequest>& camera) {
+RequestedFrame complete_frame(const RenderRequest& request, SceneInput input, const std::optional<ViewRequest>& camera,
+                              const LookStage* stage) {
   RequestedFrame frame;
   frame.input = std::move(input);
-  frame.plan = resolve(request, known_scene(frame.input), this_host());
   const PictureRequest picture =
       complete_request({request.view, camera, request.size}, frame.input.text ? frame.input.text->view : SceneView{});
   frame.view = join_view(picture.view, *picture.camera);
+  if (request.scene.look.is_given()) {
+    give_look(request, frame.input, static_cast<double>(picture.size->x) / picture.size->y, stage, frame.view);
+  }
+  frame.plan = resolve(request, known_scene(frame.input), this_host());
   check_scene_view(request, frame);
   take_grid_without_bounds(request, frame, std::span(&frame.view, 1));
   return frame;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "files/command_files.h"
+#include "gridiron/scene/look.h"
 #include "gridiron/scene/scene_input.h"
 #include "render_plan.h"
 
@@ -29,8 +30,9 @@ struct RequestedFrame {
 
 /// Completes the frame of a scene that was read; prints no notes of the scene. @param camera  that the request names.
 /// Errors: Failure.
+/// @param stage  of a look; null: that of the scene.
 [[nodiscard]] RequestedFrame complete_frame(const RenderRequest& request, SceneInput input,
-                                            const std::optional<ViewRequest>& camera);
+                                            const std::optional<ViewRequest>& camera, const LookStage* stage = nullptr);
 
 /// Where `best` is the default but has no bounds in one of the views, the plan becomes that of `grid`, if the scene has
 /// one; a note says so unless quiet.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <glm/common.hpp>
 #include <limits>
 #include <numeric>
 #include <span>

@@ -124,8 +124,8 @@ SceneFacts collect_scene_facts(const InfoPlan& plan, const SceneInput& input,
     if (packed->view.has_effects) facts.effects = effects_of(packed->view.effects, header.triangle_count);
   } else {
     const Mesh& mesh = std::get<Mesh>(input.content);
-    const EffectsView view = input.text ? input.text->effects.view() : EffectsView{};
-    const EffectsView* effects = input.text ? &view : nullptr;
+    const EffectsView view = input.effects ? input.effects->view() : EffectsView{};
+    const EffectsView* effects = input.effects ? &view : nullptr;
     const ImageLimits limits = {plan.format, budget_bytes, plan.most_macro_width, engine, store.leaf_triangles};
     const GridChoice choice = choose_grid(input, mesh, plan.scene, limits, effects);
     facts.vertices = mesh.vertices.size();

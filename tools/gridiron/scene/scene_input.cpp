@@ -19,6 +19,7 @@
 #include "gridiron/device/accuracies.h"
 #include "image_damage.h"
 #include "image_structures.h"
+#include "look.h"
 
 namespace gridiron::tool {
 namespace {
@@ -46,9 +47,8 @@ ScenePicture picture_of(const PictureRequest& asked, const SceneView& own, const
   return {camera.eye, camera.tan_half_fov, request.size->y};
 }
 
-// Puts the triangles into `mesh`, and returns the rest.
-TextScene read_text_scene(const InputFile& file, const std::filesystem::path& path, std::optional<float> tolerance,
-                          const std::optional<PictureRequest>& picture, Mesh& mesh) {
+void read_text_scene(const InputFile& file, const std::filesystem::path& path, std::optional<float> tolerance,
+                     const std::optional<PictureRequest>& picture, SceneInput& input) {
   SceneOptions options;
   options.tolerance = tolerance;
   if (picture) {
@@ -58,11 +58,11 @@ TextScene read_text_scene(const InputFile& file, const std::filesystem::path& pa
   }
   const std::string_view words(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
   SceneDescription scene = read_scene_text(words, path, options);
-  TextScene text{scene.view, take_scene_effects(scene), std::move(scene.notes), scene.note_count,
-                 std::move(scene.roundness)};
+  input.effects = take_scene_effects(scene);
+  input.text = {scene.view, std::move(scene.notes), scene.note_count, std::move(scene.roundness)};
+  Mesh& mesh = std::get<Mesh>(input.content);
   mesh.vertices = std::move(scene.geometry.vertices);
   mesh.triangles = std::move(scene.geometry.triangles);
-  return text;
 }
 
 std::string text_of(float number) {
@@ -159,9 +159,10 @@ SceneKind foreseen_kind(const std::filesystem::path& path) {
 KnownScene foreseen_scene(const SceneRequest& request) {
   const SceneKind kind = foreseen_kind(request.input);
   if (kind != SceneKind::kUnknown) require_tolerance(request.tolerance, kind);
+  check_look(request.look, kind);
   // What a packed scene holds decides its configuration.
   if (kind == SceneKind::kPacked && request.configuration == nullptr) return {};
-  return {kind, kind == SceneKind::kText};
+  return {kind, kind == SceneKind::kText || request.look.is_given()};
 }
 
 KnownScene known_scene(const SceneInput& input) {
@@ -173,7 +174,7 @@ KnownScene known_scene(const SceneInput& input) {
         .has_tree = packed->view.has_tree,
         .has_projection = packed->view.grid.triangle_format == static_cast<std::uint32_t>(TriangleFormat::kProjection)};
   }
-  if (!input.text) return {.kind = SceneKind::kMesh, .is_read = true};
+  if (!input.text) return {.kind = SceneKind::kMesh, .has_effects = input.effects.has_value(), .is_read = true};
   const SceneView& view = input.text->view;
   return {.kind = SceneKind::kText,
           .has_effects = true,
@@ -181,8 +182,16 @@ KnownScene known_scene(const SceneInput& input) {
           .size = view.is_given() ? std::optional(CountPair{view.width, view.height}) : std::nullopt};
 }
 
+void require_renderable(const SceneInput& input) {
+  const Mesh* const mesh = std::get_if<Mesh>(&input.content);
+  if (mesh == nullptr) return;
+  GridNeed need{};
+  const Status status = count_scene_image(mesh->view(), {.lambda = 1e-6f}, need);
+  if (status != Status::kOk) input_error(input.path, words_of(status));
+}
+
 std::uint32_t recursion_depth(const SceneInput& input) {
-  if (input.text) return input.text->effects.recursion_depth;
+  if (input.effects) return input.effects->recursion_depth;
   const PackedScene* packed = std::get_if<PackedScene>(&input.content);
   return packed != nullptr && packed->view.has_effects ? packed->view.effects.recursion_depth : 1;
 }
@@ -197,7 +206,7 @@ SceneInput read_scene_input(const std::filesystem::path& path, std::optional<flo
                             const std::optional<PictureRequest>& picture, const char* expected) {
   const Stopwatch stopwatch;
   const Stage stage(path, "reading");
-  SceneInput input{path, Mesh{}, {}, std::nullopt};
+  SceneInput input{.path = path, .content = Mesh{}};
   InputReader reader(path, expected);
   const SceneKind kind = scene_kind_of(reader.head(), path);
   if (kind == SceneKind::kUnknown) reader.refuse_content();
@@ -209,7 +218,7 @@ SceneInput read_scene_input(const std::filesystem::path& path, std::optional<flo
     } else if (kind == SceneKind::kPacked) {
       input.content = open_packed_scene(std::move(file), path);
     } else {
-      input.text = read_text_scene(file, path, tolerance, picture, std::get<Mesh>(input.content));
+      read_text_scene(file, path, tolerance, picture, input);
     }
   });
   input.load_seconds = stopwatch.both();

@@ -36,7 +36,6 @@ struct PackedScene {
 /// The parts of a text scene besides its triangles.
 struct TextScene {
   SceneView view;
-  SceneEffects effects;
   std::vector<SceneNote> notes;
   std::uint64_t note_count = 0;
   SceneRoundness roundness;
@@ -45,8 +44,9 @@ struct TextScene {
 struct SceneInput {
   std::filesystem::path path;
   std::variant<Mesh, PackedScene> content;
-  HostSeconds load_seconds{};       ///< of reading and checking
-  std::optional<TextScene> text{};  ///< beside a Mesh
+  HostSeconds load_seconds{};             ///< of reading and checking
+  std::optional<SceneEffects> effects{};  ///< beside a Mesh: of a text scene, or of a look
+  std::optional<TextScene> text{};        ///< beside a Mesh and its effects
 };
 
 inline constexpr const char* kSceneExpected =
@@ -72,6 +72,9 @@ struct PictureRequest {
 
 /// @returns what is known of a scene once it is read.
 [[nodiscard]] KnownScene known_scene(const SceneInput& input);
+
+/// Throws Failure (kBadInput) if a mesh or text scene cannot be rendered at all.
+void require_renderable(const SceneInput& input);
 
 /// @returns the depth of recursion of a scene's rays, 1 without effects.
 [[nodiscard]] std::uint32_t recursion_depth(const SceneInput& input);

@@ -1,0 +1,49 @@
+// Look: gives a mesh lights, a ground, a colour, smooth normals and a background, so that its picture is worth showing.
+// Memory: owns what it adds. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+#include <gridiron/base/math.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "look_request.h"
+#include "scene_input.h"
+#include "view.h"
+
+namespace gridiron::tool {
+
+/// Where an object stands: the box around it, or around all frames of a series.
+struct LookStage {
+  DVec3 low{0.0}, high{0.0};
+};
+
+/// @returns the box around the points. Precondition: there are some.
+[[nodiscard]] LookStage stage_of(const PointSource& points);
+
+/// @returns the colour of "RRGGBB", "#RRGGBB", sRGB, or of a name of colour_names(): linear, 0..1 each.
+[[nodiscard]] std::optional<Vec3> parse_color(std::string_view text);
+
+/// Names that parse_color() knows: "white", "grey", "black", "clay", ...
+[[nodiscard]] std::span<const std::string_view> color_names();
+
+/// @returns the lights of "none", or of a list of "head", "key", "area" with commas.
+[[nodiscard]] std::optional<LookLights> parse_lights(std::string_view text);
+
+/// Puts a mesh into its look: triangles of the ground behind its own, effects beside it. For a text scene replaces
+/// background, samples, occlusion and levels of its own.
+///
+/// Directions: the lights stand still, where the first view has its left and its up. The key light, a point, shines
+/// from the left over the viewer's shoulder; the area light from the right; both from so far away that the ground is
+/// lit evenly. The background has the colour of the lit ground, so that the ground seems to have no end.
+/// @param view  with eye, at and up. @param stage  the mesh's own, or of a series. Precondition: no packed scene.
+/// Errors: Failure (kUsage): for a text scene, options that only a mesh has.
+void apply_look(SceneInput& input, const LookRequest& request, const Camera& view, const LookStage& stage);
+
+/// Throws Failure (kUsage) if a look cannot be had for this kind of scene.
+void check_look(const LookRequest& request, SceneKind kind);
+
+}  // namespace gridiron::tool

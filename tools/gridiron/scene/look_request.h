@@ -1,0 +1,38 @@
+// Look request: the parts of a look that a command line names. Apart from look.h, since every scene's request has it.
+// Memory: plain values. Threads: any. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gridiron/base/effect_records.h>
+#include <gridiron/base/math.h>
+
+#include <cstdint>
+#include <optional>
+
+namespace gridiron::tool {
+
+/// Lights of a look.
+struct LookLights {
+  bool head = false;  ///< a point at the eye: its shadows are not seen
+  bool key = false;   ///< a point
+  bool area = false;
+};
+
+/// The parts of a look; those that are not given are the studio's, or else left out.
+struct LookRequest {
+  bool is_studio = false;
+  std::optional<Vec3> background;  ///< linear
+  std::optional<Vec3> color;       ///< of the mesh, in place of its own; linear
+  std::optional<bool> ground;
+  std::optional<LookLights> lights;
+  std::optional<std::uint32_t> samples;    ///< of a pixel: 1, 4, 16
+  std::optional<std::uint32_t> occlusion;  ///< rays a point: 0..kMostEffectSamples
+  std::optional<float> smooth_degrees;     ///< edges that bend less are smooth; 0..180
+  std::optional<ColorLevels> levels;
+
+  /// Whether a mesh gets effects.
+  [[nodiscard]] bool is_given() const {
+    return is_studio || background || color || ground || lights || samples || occlusion || smooth_degrees || levels;
+  }
+};
+
+}  // namespace gridiron::tool
