@@ -114,7 +114,7 @@ TEST(CreaseNormals, TakeWhatHasNoArea) {
 
 // Each part alone calls for its own effect and nothing else.
 TEST(Look, PartsCallForTheirEffects) {
-  constexpr std::uint32_t kPlain = kSceneShading | kPointShadows;  // of the light at the eye
+  constexpr std::uint32_t kPlain = kSceneShading | kPointShadows | kHighlights;  // of the light at the eye
   const struct {
     const char* name;
     LookRequest request;

@@ -26,17 +26,18 @@ constexpr std::uint32_t kStudioSamples = 4, kStudioOcclusion = 16;
 constexpr float kStudioSmoothDegrees = 35.0f;
 constexpr std::uint32_t kAreaSamples = 4;  // of each sample of a pixel
 
-const Vec3 kClay = {0.58f, 0.46f, 0.36f};   // of a mesh without a colour
-const Vec3 kPaper = {0.68f, 0.69f, 0.71f};  // of the ground
+// Of a mesh without materials: clay with a faint shine.
+const SceneMaterial kPlain = {.color = {0.52f, 0.39f, 0.29f}, .kd = 0.92f, .ks = 0.08f, .shine = 40.0f};
+const Vec3 kPaper = {0.51f, 0.52f, 0.54f};  // of the ground
 const Vec3 kHeadColor = Vec3(0.9f);         // alone
 const Vec3 kFillColor = Vec3(0.30f);        // of the head light beside others
-const Vec3 kKeyColor = {0.62f, 0.58f, 0.52f};
-const Vec3 kAreaColor = {0.24f, 0.27f, 0.32f};
+const Vec3 kKeyColor = {1.05f, 0.98f, 0.88f};
+const Vec3 kAreaColor = {0.26f, 0.32f, 0.42f};
 
 // Where the lights stand, seen from the object: degrees from the view to the right and upwards; distance and edge in
 // radii of the object. They are far, so that the ground is lit evenly.
-constexpr double kKeyAzimuth = -52, kKeyElevation = 52, kKeyDistance = 60;
-constexpr double kAreaAzimuth = 62, kAreaElevation = 48, kAreaDistance = 40, kAreaEdge = 26;
+constexpr double kKeyAzimuth = -42, kKeyElevation = 48, kKeyDistance = 2000;
+constexpr double kAreaAzimuth = 70, kAreaElevation = 42, kAreaDistance = 600, kAreaEdge = 420;
 
 // The ground: rings of triangles, small below the object.
 constexpr std::uint32_t kGroundSegments = 48, kGroundRings = 12;
@@ -124,13 +125,14 @@ void give_materials(const Mesh& mesh, const LookRequest& request, bool is_smooth
   const MeshSurface& surface = mesh.surface;
   const std::size_t count = mesh.triangles.size();
   if (request.color || surface.is_empty() || (surface.triangle_materials.empty() && surface.triangle_colors.empty())) {
-    const SceneMaterial plain{.color = request.color.value_or(kClay)};
+    SceneMaterial plain = kPlain;
+    if (request.color) plain.color = *request.color;
     effects.materials = {material_of(plain, is_smooth)};
     effects.triangle_materials.assign(count, 0);
     return;
   }
   std::vector<SceneMaterial> own = surface.materials;
-  if (surface.triangle_materials.empty()) own = {SceneMaterial{.color = kClay}};
+  if (surface.triangle_materials.empty()) own = {kPlain};
   effects.triangle_materials = surface.triangle_materials;
   effects.triangle_materials.resize(count, 0);
   for (const SceneMaterial& material : own) effects.materials.push_back(material_of(material, is_smooth));
@@ -351,7 +353,9 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
   effects.background = request.background.value_or(glm::min(lit, Vec3(1)));
   effects.samples_per_pixel = request.samples.value_or(is_studio ? kStudioSamples : 1);
   effects.levels = request.levels.value_or(ColorLevels::kSrgb);
-  effects.recursion_depth = kDefaultRecursionDepth;
+  // Mirrors and glass are the file's; what shines a little does not mirror.
+  const bool has_own_materials = !request.color && !mesh.surface.triangle_materials.empty();
+  effects.recursion_depth = has_own_materials ? kDefaultRecursionDepth : 1;
   input.effects = std::move(effects);
 }
 
