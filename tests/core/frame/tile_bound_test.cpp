@@ -318,8 +318,10 @@ TEST(TileBound, RaysByKindAreReachedOnALitFloor) {
   TestEffects subject = all_effects();
   subject.vertices = {{-50, 0, -50}, {50, 0, -50}, {0, 0, 80}};
   subject.triangles = {{0, 2, 1}};
-  subject.triangle_materials = {0};
-  subject.triangle_normals = {UVec3(kNoNormals)};
+  subject.triangle_materials = {1};
+  subject.normals = {{0, 1, 0}};
+  subject.triangle_normals = {{0, 0, 0}};
+  subject.triangle_colors = {{0, 1, 0}};
   for (Light& light : subject.lights) {
     light.corner = {0, 9, 0};
     if (light.samples != 0) light.edge_u = {1, 0, 0}, light.edge_v = {0, 0, 1};
@@ -337,7 +339,8 @@ TEST(TileBound, RaysByKindAreReachedOnALitFloor) {
   ASSERT_TRUE(trace.has_value());
   const TileCounts tile = counts_of(trace->tiles[0]);
   for (const Work kind : {Work::kWaveRay, Work::kQueuedRay, Work::kSurfacePoint, Work::kShadowRay, Work::kLightSample,
-                          Work::kOcclusionRay, Work::kColorAdded, Work::kColorGroup, Work::kListRay}) {
+                          Work::kOcclusionRay, Work::kColorAdded, Work::kColorGroup, Work::kSmoothNormal, Work::kVertexColor,
+                          Work::kSrgbLevel, Work::kListRay}) {
     EXPECT_EQ(tile[kind], bound[kind]) << "kind " << static_cast<int>(kind);
   }
 }
@@ -356,6 +359,7 @@ TEST(TileBound, ListsAreReachedByARayThatMeetsEveryBox) {
   }
   subject.triangle_materials.assign(subject.triangles.size(), 0);
   subject.triangle_normals.assign(subject.triangles.size(), UVec3(kNoNormals));
+  subject.triangle_colors = subject.triangle_normals;
   subject.lights.clear();
   subject.settings.recursion_depth = 1;
   subject.settings.occlusion_samples = 0;

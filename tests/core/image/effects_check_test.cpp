@@ -19,7 +19,7 @@ TEST(EffectsOfAnImage, PassWithEverySubsetOfWhatMayBeMissing) {
     TestEffects scene = all_effects((subset & 1) != 0 ? 9 : 0);
     if ((subset & 2) != 0) scene.lights.clear();
     if ((subset & 4) != 0) scene.triangle_materials.assign(4, 0);
-    if ((subset & 4) != 0) scene.triangle_normals.clear();
+    if ((subset & 4) != 0) scene.triangle_normals.clear(), scene.triangle_colors.clear();
     if ((subset & 8) != 0) scene.settings.recursion_depth = 1;
     if ((subset & 16) != 0) scene.settings.occlusion_samples = 0;
     const BuiltImage built = build(scene, (subset & 32) != 0 ? TriangleFormat::kVertices : TriangleFormat::kLattice);
@@ -41,6 +41,7 @@ TEST(EffectsOfAnImage, MaterialsPassHoweverTheirSharesRound) {
   }
   scene.triangle_materials.assign(4, 999);
   scene.triangle_normals.clear();
+  scene.triangle_colors.clear();
   const BuiltImage built = build(scene);
   EXPECT_FALSE(HasFailure());
 }
@@ -311,7 +312,8 @@ TEST(EffectsLayout, FieldsStandWhereTheSpecificationSays) {
   EXPECT_EQ(offsetof(EffectsRecord, smooth_triangle_count), 52u);
   EXPECT_EQ(offsetof(EffectsRecord, materials_offset_bytes), 56u);
   EXPECT_EQ(offsetof(EffectsRecord, environment_offset_bytes), 88u);
-  EXPECT_EQ(offsetof(EffectsRecord, reserved), 96u);
+  EXPECT_EQ(offsetof(EffectsRecord, levels), 96u);
+  EXPECT_EQ(offsetof(EffectsRecord, reserved), 100u);
   EXPECT_EQ(offsetof(MaterialRecord, transmitted), 16u);
   EXPECT_EQ(offsetof(MaterialRecord, shine), 32u);
   EXPECT_EQ(offsetof(MaterialRecord, is_smooth), 40u);
@@ -321,7 +323,8 @@ TEST(EffectsLayout, FieldsStandWhereTheSpecificationSays) {
   EXPECT_EQ(offsetof(SurfaceRecord, material), 36u);
   EXPECT_EQ(offsetof(SurfaceRecord, normals), 40u);
   EXPECT_EQ(offsetof(SurfaceRecord, tree_place), 44u);
-  EXPECT_EQ(offsetof(NormalRecord, reserved), 36u);
+  EXPECT_EQ(offsetof(MaterialRecord, has_colors), 44u);
+  EXPECT_EQ(offsetof(NormalRecord, colors), 36u);
   EXPECT_EQ(offsetof(FrameHead, effects_address), 136u);
   EXPECT_EQ(offsetof(FrameHead, image_address), 144u);
   EXPECT_EQ(offsetof(FrameHead, tree_address), 152u);

@@ -46,16 +46,16 @@ std::string field_of_element(const SectionEntry& entry, TriangleFormat format, s
       }
       return field_in({{"triangle.projection", 40}, {"triangle.reserved", 44}, {"triangle.triangle_id", 48}}, offset);
     case SectionKind::kEffects:
-      return field_in({{"effects", 56}, {"effects.offset", 96}, {"effects.reserved", 128}}, offset);
+      return field_in({{"effects", 56}, {"effects.offset", 96}, {"effects.levels", 100}, {"effects.reserved", 128}}, offset);
     case SectionKind::kMaterials:
-      return field_in({{"material", 44}, {"material.reserved", 48}}, offset);
+      return field_in({{"material", 44}, {"material.has_colors", 48}}, offset);
     case SectionKind::kLights:
       return field_in({{"light", 44}, {"light.reserved0", 48}, {"light", 60}, {"light.reserved1", 64}}, offset);
     case SectionKind::kSurfaces:
       return field_in(
           {{"surface.v", 36}, {"surface.material", 40}, {"surface.normals", 44}, {"surface.tree_place", 48}}, offset);
     case SectionKind::kNormals:
-      return field_in({{"normal.n", 36}, {"normal.reserved", 48}}, offset);
+      return field_in({{"normal.n", 36}, {"normal.colors", 48}}, offset);
     case SectionKind::kEnvironmentMap:
       return "environment.texels";
     case SectionKind::kTree:
@@ -197,8 +197,9 @@ TEST(SealedImage, OfEffectsOnlyWhatAnotherSceneMayHaveIsFree) {
   for (const TriangleFormat format : {TriangleFormat::kVertices, TriangleFormat::kLattice}) {
     BuiltImage built = image_with_effects(format, 2);
     ASSERT_FALSE(HasFailure());
-    EXPECT_EQ(free_fields(built), (Names{"effects", "environment.texels", "grid.lambda", "header.vertex_count", "light",
-                                         "material", "normal.n", "surface.v", "tree.leaf_triangles"}));
+    EXPECT_EQ(free_fields(built), (Names{"effects", "effects.levels", "environment.texels", "grid.lambda",
+                                         "header.vertex_count", "light", "material", "material.has_colors",
+                                         "normal.colors", "normal.n", "surface.v", "tree.leaf_triangles"}));
   }
 }
 
@@ -212,8 +213,9 @@ TEST(SealedImage, OfATreeAloneOnlyWhatAnotherMeshMayHaveIsFree) {
 
     built = image_with_effects(format, 2, false);
     ASSERT_FALSE(HasFailure());
-    EXPECT_EQ(free_fields(built), (Names{"effects", "environment.texels", "header.vertex_count", "light", "material",
-                                         "normal.n", "surface.v", "tree.leaf_triangles"}));
+    EXPECT_EQ(free_fields(built), (Names{"effects", "effects.levels", "environment.texels", "header.vertex_count", "light",
+                                         "material", "material.has_colors", "normal.colors", "normal.n", "surface.v",
+                                         "tree.leaf_triangles"}));
   }
 }
 

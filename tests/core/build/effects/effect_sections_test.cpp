@@ -61,6 +61,7 @@ TEST(EffectSections, EmptyOnesAreLeftOut) {
   scene.lights.clear();
   scene.triangle_materials.assign(4, 0);
   scene.triangle_normals.clear();
+  scene.triangle_colors.clear();
   const BuiltImage built = build(scene);
   ASSERT_FALSE(HasFailure());
   EXPECT_EQ(built.view.header.section_count, 10u);
@@ -141,6 +142,7 @@ TEST(EffectSections, HoldASurfaceForEveryTriangleAndNormalsForSmoothOnes) {
       const auto normal = read_at<NormalRecord>(built, effects.normals_offset_bytes, normals[i]);
       const Vec3 expected = scene.normals[scene.triangle_normals[i][corner]];
       EXPECT_EQ(std::memcmp(normal.n[corner], &expected, sizeof(expected)), 0) << i << " " << corner;
+      EXPECT_EQ(normal.colors[corner], packed_color(scene.colors[scene.triangle_colors[i][corner]]));
     }
   }
 }
