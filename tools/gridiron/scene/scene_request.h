@@ -10,6 +10,7 @@
 #include "files/file_kind.h"
 #include "gridiron/device/configurations.h"
 #include "gridiron/device/machine_file.h"
+#include "import/model_import.h"
 
 namespace gridiron::tool {
 
@@ -21,6 +22,7 @@ struct SceneRequest {
   std::optional<float> lambda;
   std::optional<std::uint32_t> macro_width;
   std::optional<float> tolerance;  ///< of round shapes in a text scene, world units; nothing: the reader's default
+  ImportOptions model{};           ///< how one is read with Assimp
   bool quiet = false;              ///< notes are not told
 };
 
