@@ -34,7 +34,7 @@ TEST(ImportProgram, CommandsTellWhatWasRead) {
   const TemporaryFolder folder("a.obj", obj_text(box) + "l 1 2\n");
   for (const Words& command : {Words{"render", "a.obj", "-o", "a.png", "--size", "8x8"}, Words{"info", "a.obj"},
                                Words{"pack", "a.obj", "-o", "a.gri"},
-                               Words{"job", "a.obj", "-o", "a.job", "--size", "8x8"}}) {
+                               Words{"job", "a.obj", "-o", "a.job", "--base", "0x80000000", "--size", "8x8"}}) {
     const ProgramResult result = run(folder, command);
     EXPECT_NE(result.err.find("a.obj: OBJ, 1 mesh, 12 triangles; read with Assimp"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("a.obj: ignored: 1 line\n"), std::string::npos) << result.err;

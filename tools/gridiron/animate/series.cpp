@@ -175,7 +175,7 @@ MadeFrame Series::make(std::size_t i, bool has_timeline, const FrameProgress& pr
   request.view = frame.framed.value_or(request_.view);
   RequestedFrame requested = complete_frame(request, std::move(input), camera_);
   choose_builder(animate_, requested.plan);
-  if (has_told_ && !request.scene.quiet) tell_notes(requested.input);
+  if (has_told_ && !frame.moment && !request.scene.quiet) tell_notes(requested.input);
   if (!std::exchange(has_told_, true)) tell_frame_notes(request, requested);
   FrameMemory memory(frame_memory_bytes(requested.input, requested.plan));
   if (!animate_.keeps_vertex_order) memory.vertex_order = &vertex_order_;
