@@ -34,7 +34,8 @@ Seen read_in_pieces(const std::uint8_t* data, std::size_t bytes, std::size_t pie
   const auto reader = std::make_unique<PlyReader>();
   std::vector<Vec3> vertices(batch);
   std::vector<UVec3> triangles(batch);
-  reader->set_output({vertices, triangles});
+  std::vector<Vec3> normals(batch), colors(batch);
+  reader->set_output({vertices, triangles, normals, colors});
   Seen seen;
   std::uint64_t vertex_total = 0, triangle_total = 0;
   const auto take = [&](const PlyStep& step) {
@@ -49,6 +50,11 @@ Seen read_in_pieces(const std::uint8_t* data, std::size_t bytes, std::size_t pie
           const std::uint32_t bits = std::bit_cast<std::uint32_t>(vertices[i][axis]);
           require((bits & 0x7F800000u) != 0x7F800000u);
           seen.digest.add(bits);
+          const std::uint32_t normal = std::bit_cast<std::uint32_t>(normals[i][axis]);
+          require((normal & 0x7F800000u) != 0x7F800000u);
+          require(colors[i][axis] >= 0.0f && colors[i][axis] <= 1.0f);
+          seen.digest.add(normal);
+          seen.digest.add(std::bit_cast<std::uint32_t>(colors[i][axis]));
         }
       }
     }
@@ -128,5 +134,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t byte
   std::vector<Vec3> vertices(counted.counts.vertices);
   std::vector<UVec3> triangles(counted.counts.triangles);
   require(read_ply(input, vertices, triangles).error == PlyError::kNone);
+  std::vector<Vec3> normals(vertices.size()), colors(vertices.size());
+  require(read_ply(input, {vertices, triangles, normals, colors}).error == PlyError::kNone);
   return 0;
 }

@@ -37,6 +37,14 @@ function(gridiron_use_png target)
   endif()
 endfunction()
 
+# gridiron_use_jpeg(TARGET): the same for libjpeg, GRIDIRON_HAS_JPEG.
+function(gridiron_use_jpeg target)
+  if(GRIDIRON_HAS_JPEG)
+    target_compile_definitions(${target} PRIVATE GRIDIRON_HAS_JPEG)
+    target_link_libraries(${target} PRIVATE JPEG::JPEG)
+  endif()
+endfunction()
+
 # Builds of one commit differ only by these lines, whatever else is on the machine.
 function(gridiron_print_options)
   if(NOT PROJECT_IS_TOP_LEVEL)

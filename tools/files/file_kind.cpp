@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "base/words.h"
 
@@ -24,6 +25,7 @@ static_assert(std::endian::native == std::endian::little, "magic words are compa
 struct Magic {
   std::string_view bytes;
   const char* words;
+  bool may_be_model = false;
 };
 
 constexpr auto kMagics = std::to_array<Magic>({
@@ -45,12 +47,12 @@ constexpr auto kMagics = std::to_array<Magic>({
      "7zXZ",
      "is compressed with xz; unpack it first"},
     {"\x28\xB5\x2F\xFD", "is compressed with zstd; unpack it first"},
-    {"PK\x03\x04", "is a zip archive; unpack it first"},
-    {"glTF", "is a glTF scene"},
-    {"Kaydara FBX", "is an FBX scene"},
-    {"BLENDER", "is a Blender scene"},
-    {"#VRML", "is a VRML scene"},
-    {"<?xml", "is XML text"},
+    {"PK\x03\x04", "is a zip archive; unpack it first", true},
+    {"glTF", "is a glTF scene", true},
+    {"Kaydara FBX", "is an FBX scene", true},
+    {"BLENDER", "is a Blender scene", true},
+    {"#VRML", "is a VRML scene", true},
+    {"<?xml", "is XML text", true},
     {"<!DOCTYPE html", "is a web page"},
     {"<!doctype html", "is a web page"},
     {"<html", "is a web page"},
@@ -59,6 +61,13 @@ constexpr auto kMagics = std::to_array<Magic>({
      "ELF",
      "is a program"},
 });
+
+// Endings of models that are read with Assimp. Those of animations alone and of whole worlds are left out.
+constexpr auto kModelEndings = std::to_array<std::string_view>(
+    {"obj", "stl", "gltf",  "glb",     "off", "dae",  "fbx",  "3ds", "3mf",     "amf", "ac",
+     "ase", "b3d", "blend", "cob",     "dxf", "hmp",  "iqm",  "irr", "irrmesh", "lwo", "lws",
+     "lxo", "md2", "md3",   "md5mesh", "mdl", "ms3d", "ogex", "pk3", "pmx",     "q3o", "q3s",
+     "scn", "sib", "smd",   "ter",     "uc",  "vta",  "x",    "x3d", "xgl",     "zae", "zgl"});
 
 std::string_view text_of(std::span<const std::byte> head) {
   return {reinterpret_cast<const char*>(head.data()), head.size()};
@@ -138,24 +147,70 @@ bool is_binary_stl(std::span<const std::byte> head, std::optional<std::uint64_t>
   return *file_bytes == kHeaderBytes + std::uint64_t{count} * kTriangleBytes;
 }
 
+std::string lower_ending(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  if (!ending.empty()) ending.erase(0, 1);
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return ending;
+}
+
+const Magic* magic_of(std::span<const std::byte> head) {
+  const auto magic =
+      std::ranges::find_if(kMagics, [&](const Magic& each) { return text_of(head).starts_with(each.bytes); });
+  return magic != kMagics.end() ? &*magic : nullptr;
+}
+
+// The ending that the content itself asks for, whatever the name is; empty: none.
+std::string_view ending_by_content(std::span<const std::byte> head, std::optional<std::uint64_t> file_bytes) {
+  const std::string_view text = text_of(head);
+  if (text.starts_with("glTF")) return "glb";
+  if (text.starts_with("Kaydara FBX")) return "fbx";
+  if (text.starts_with("BLENDER")) return "blend";
+  if (magic_of(head) != nullptr) return "";
+  if (is_binary_stl(head, file_bytes)) return "stl";
+  return "";
+}
+
+std::string_view ending_by_words(std::span<const std::byte> head) {
+  if (is_binary(head) || is_text_scene(head)) return "";
+  const char* const words = words_of_text(text_of(head));
+  if (words == nullptr) return "";
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kWords = {
+      {{"is a glTF scene", "gltf"}, {"is an STL mesh", "stl"}, {"is an OFF mesh", "off"}, {"is an OBJ mesh", "obj"}}};
+  const auto found = std::ranges::find(kWords, std::string_view(words), [](const auto& each) { return each.first; });
+  return found != kWords.end() ? found->second : "";
+}
+
 }  // namespace
+
+std::string model_ending(std::span<const std::byte> head, const std::filesystem::path& path,
+                         std::optional<std::uint64_t> file_bytes) {
+  if (head.empty() || is_mesh(head) || starts_with_word(head, kImageMagic)) return "";
+  if (const std::string_view own = ending_by_content(head, file_bytes); !own.empty()) return std::string(own);
+  const std::string ending = lower_ending(path);
+  if (std::ranges::find(kModelEndings, ending) != kModelEndings.end()) {
+    const Magic* const magic = magic_of(head);
+    return magic == nullptr || magic->may_be_model ? ending : "";
+  }
+  return ending == "nff" ? "" : std::string(ending_by_words(head));
+}
 
 bool starts_with_word(std::span<const std::byte> head, std::uint32_t magic) {
   return head.size() >= sizeof magic && std::memcmp(head.data(), &magic, sizeof magic) == 0;
 }
 
 SceneKind scene_kind_by_ending(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  if (ending == ".ply") return SceneKind::kMesh;
-  if (ending == ".nff") return SceneKind::kText;
-  if (ending == ".gri") return SceneKind::kPacked;
+  const std::string ending = lower_ending(path);
+  if (ending == "ply" || std::ranges::find(kModelEndings, ending) != kModelEndings.end()) return SceneKind::kMesh;
+  if (ending == "nff") return SceneKind::kText;
+  if (ending == "gri") return SceneKind::kPacked;
   return SceneKind::kUnknown;
 }
 
-SceneKind scene_kind_of(std::span<const std::byte> head, const std::filesystem::path& path) {
-  if (is_mesh(head)) return SceneKind::kMesh;
+SceneKind scene_kind_of(std::span<const std::byte> head, const std::filesystem::path& path,
+                        std::optional<std::uint64_t> file_bytes) {
+  if (is_mesh(head) || !model_ending(head, path, file_bytes).empty()) return SceneKind::kMesh;
   if (starts_with_word(head, kImageMagic)) return SceneKind::kPacked;
   if (is_text_scene(head)) return SceneKind::kText;
   const bool is_named_text = scene_kind_by_ending(path) == SceneKind::kText && !head.empty() && !is_binary(head);
@@ -167,9 +222,8 @@ const char* words_of_marked_content(std::span<const std::byte> head) {
   if (starts_with_word(head, kImageMagic)) return "is a packed scene";
   if (starts_with_word(head, port::kFrameJobMagic)) return "is a job";
   if (starts_with_word(head, port::kFrameResultMagic)) return "is the result of a job";
-  const auto magic =
-      std::ranges::find_if(kMagics, [&](const Magic& each) { return text_of(head).starts_with(each.bytes); });
-  return magic != kMagics.end() ? magic->words : nullptr;
+  const Magic* const magic = magic_of(head);
+  return magic != nullptr ? magic->words : nullptr;
 }
 
 std::string words_of_content(std::span<const std::byte> head, std::optional<std::uint64_t> file_bytes) {

@@ -56,6 +56,11 @@ int open_for_reading(const std::filesystem::path& path) {
   throw Failure(ExitCode::kBadInput, message);
 }
 
+std::uint64_t joined_hash(std::uint64_t one, std::uint64_t other) {
+  const std::uint64_t values[] = {one, other};
+  return content_hash(std::as_bytes(std::span(values)));
+}
+
 // Passes bytes on piece by piece, each with its place, and then returns the piece's memory to the host.
 template <class Action>
 void for_each_piece(std::span<std::byte> bytes, Action action) {
@@ -113,10 +118,7 @@ std::size_t InputReader::read_some(std::span<std::byte> target) const {
 InputFile InputReader::read_all(std::size_t most_bytes) {
   if (file_bytes_ && *file_bytes_ > most_bytes) fail(path_, EFBIG);
   InputFile file = name_in_shortage(path_, "read it", [&] { return read_rest(most_bytes); });
-  if (input_hash != nullptr) {
-    const std::uint64_t values[] = {input_hash->value_, content_hash(file.bytes)};
-    input_hash->value_ = content_hash(std::as_bytes(std::span(values)));
-  }
+  if (input_hash != nullptr) input_hash->value_ = joined_hash(input_hash->value_, content_hash(file.bytes));
   return file;
 }
 
@@ -154,6 +156,11 @@ InputHash::InputHash() {
 
 InputHash::~InputHash() {
   input_hash = nullptr;
+}
+
+void note_read_file(const std::filesystem::path& path, std::uint64_t content) {
+  note_input(path);
+  if (input_hash != nullptr) input_hash->value_ = joined_hash(input_hash->value_, content);
 }
 
 InputFile read_input_file(const std::filesystem::path& path, const std::string& expected, std::size_t most_bytes) {

@@ -53,6 +53,9 @@ class InputReader {
   /// The first bytes, all of them if there are fewer than kHeadBytes.
   [[nodiscard]] std::span<const std::byte> head() const { return head_; }
 
+  /// Size of a regular file.
+  [[nodiscard]] std::optional<std::uint64_t> file_bytes() const { return file_bytes_; }
+
   /// Reads to the end, which uses the reader up. Errors: Failure (kBadInput) if it cannot be read, or is larger than
   /// `most_bytes` or than the memory of this host.
   [[nodiscard]] InputFile read_all(std::size_t most_bytes = kAnySize);
@@ -84,9 +87,14 @@ class InputHash {
 
  private:
   friend class InputReader;
+  friend void note_read_file(const std::filesystem::path& path, std::uint64_t content);
 
   std::uint64_t value_ = 0;
 };
+
+/// Notes a file that another process has read for this one. @param content  its content_hash(). Errors: those of
+/// note_input().
+void note_read_file(const std::filesystem::path& path, std::uint64_t content);
 
 [[nodiscard]] InputFile read_input_file(const std::filesystem::path& path, const std::string& expected,
                                         std::size_t most_bytes = kAnySize);

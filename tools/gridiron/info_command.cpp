@@ -414,8 +414,8 @@ void run_command(const InfoRequest& request) {
   if (foreseen.kind != SceneKind::kUnknown) (void)resolve(request, foreseen);
   std::optional<ViewRequest> view;
   if (request.camera) view = read_camera_file(*request.camera);
-  const SceneInput input =
-      read_scene_input(request.scene.input, request.scene.tolerance, PictureRequest{.size = request.size});
+  const SceneInput input = read_scene_input(request.scene.input, request.scene.tolerance,
+                                            PictureRequest{.size = request.size}, kSceneExpected, request.scene.model);
   const InfoPlan plan = resolve(request, known_scene(input));
   if (!request.scene.quiet) tell_notes(input);
   const SceneFacts facts = collect_scene_facts(plan, input, view);

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -18,6 +19,7 @@
 #include "files/interrupt.h"
 #include "files/overdue_exit.h"
 #include "gridiron/command_line/arguments.h"
+#include "import/model_import.h"
 
 namespace {
 
@@ -77,6 +79,7 @@ ExitCode run(int count, const char* const* values) {
 }  // namespace
 
 int main(int count, char** values) {
+  if (const std::optional<int> code = gridiron::tool::serve_import(count, values)) return *code;
   const gridiron::tool::CommandFiles files;
   return static_cast<int>(run(count, values));
 }

@@ -19,7 +19,7 @@
 namespace gridiron::tool {
 namespace {
 
-constexpr const char* kExpectedScene = "pack takes a PLY mesh or a text scene (NFF)";
+constexpr const char* kExpectedScene = "pack takes a mesh (PLY, OBJ, STL, glTF) or a text scene (NFF)";
 
 // The scene with the named configuration, or with the default one for its triangles.
 SceneRequest completed(const PackRequest& request, const KnownScene& known) {
@@ -52,8 +52,8 @@ void run_command(const PackRequest& request) {
   (void)completed(request, foreseen_scene(request.scene));
   declare_outputs({{"-o", request.output, OutputKind::kBinary}});
   const StageLines stages(!request.scene.quiet);
-  const SceneInput input =
-      read_scene_input(request.scene.input, request.scene.tolerance, PictureRequest{}, kExpectedScene);
+  const SceneInput input = read_scene_input(request.scene.input, request.scene.tolerance, PictureRequest{},
+                                            kExpectedScene, request.scene.model);
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
     input_error(input.path, std::string("is a scene image already; ") + kExpectedScene);

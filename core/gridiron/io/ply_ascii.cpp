@@ -84,6 +84,16 @@ bool PlyReader::token(const char* text, std::size_t bytes, std::uint64_t byte_of
   const bool is_count = property.count_type != Type::kNone && !in_list_;
   if (property.role == Role::kSkip && !is_count) {
     if (!is_number(text, bytes)) return fail_in_row(PlyError::kBadNumber, byte_offset);
+    if (is_kept(property)) {
+      std::uint32_t float_bits = 0;
+      if (parse_float(text, bytes, float_bits) != DecimalStatus::kOk) float_bits = 0;
+      // A colour of an integer type is scaled as in a binary body.
+      const float value = std::bit_cast<float>(float_bits);
+      const bool is_scaled = property.attribute >= 3 && !is_floating(property.type);
+      const float scaled = is_scaled ? value / (property.type == Type::kUint16 ? 65535.0f : 255.0f) : value;
+      attributes_[property.attribute] =
+          attribute_value(std::bit_cast<std::uint32_t>(scaled), Type::kFloat32, property.attribute);
+    }
     if (!in_list_ || --list_left_ == 0) end_property();
     return true;
   }

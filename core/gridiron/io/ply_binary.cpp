@@ -80,7 +80,7 @@ bool PlyReader::binary_body(const std::byte* bytes, std::size_t count, std::size
     }
     const Property& property = current_property();
     const bool is_count = property.count_type != Type::kNone && !in_list_;
-    if (property.role == Role::kSkip && !is_count) {
+    if (property.role == Role::kSkip && !is_count && !is_kept(property)) {
       skip_bytes_ = type_bytes(property.type);
       continue;
     }
@@ -96,6 +96,11 @@ bool PlyReader::binary_body(const std::byte* bytes, std::size_t count, std::size
       carry_bytes_ = 0;
     } else {
       used += wanted;
+    }
+    if (property.attribute < kAttributes) {
+      attributes_[property.attribute] = attribute_value(load_bits(value, type), type, property.attribute);
+      end_property();
+      continue;
     }
     if (!binary_value(load_bits(value, type), type, offset_ + used - wanted)) return false;
   }
@@ -115,8 +120,12 @@ std::size_t PlyReader::quick_rows(const std::byte* bytes, std::size_t row_count)
       return 0;
     case Kind::kVertex: {
       const std::size_t rows = room(output_.vertices.size(), row_count);
-      if (!layout_.all_float) return quick_vertices(bytes, rows);
-      return swap_bytes_ ? quick_float_vertices<true>(bytes, rows) : quick_float_vertices<false>(bytes, rows);
+      const std::size_t first_item = batch_;
+      const std::size_t done = !layout_.all_float ? quick_vertices(bytes, rows)
+                               : swap_bytes_      ? quick_float_vertices<true>(bytes, rows)
+                                                  : quick_float_vertices<false>(bytes, rows);
+      quick_attributes(bytes, done, first_item);
+      return done;
     }
     case Kind::kFace:
       break;
@@ -150,6 +159,20 @@ std::size_t PlyReader::quick_float_vertices(const std::byte* bytes, std::size_t 
   }
   if (output != nullptr) batch_ += row;
   return row;
+}
+
+void PlyReader::quick_attributes(const std::byte* bytes, std::size_t row_count, std::size_t first_item) {
+  const bool has_normals = header_.has_normals && !output_.normals.empty();
+  const bool has_colors = header_.has_colors && !output_.colors.empty();
+  if (output_.vertices.empty() || (!has_normals && !has_colors)) return;
+  const std::uint8_t begin = has_normals ? 0 : 3, end = has_colors ? 6 : 3;
+  for (std::size_t row = 0; row < row_count; ++row, bytes += layout_.stride_bytes) {
+    for (std::uint8_t i = begin; i < end; ++i) {
+      const Type type = layout_.attribute_types[i];
+      attributes_[i] = attribute_value(load_bits(bytes + layout_.attribute_offset_bytes[i], type), type, i);
+    }
+    keep_attributes(first_item + row);
+  }
 }
 
 std::size_t PlyReader::quick_vertices(const std::byte* bytes, std::size_t row_count) {

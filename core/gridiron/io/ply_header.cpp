@@ -172,7 +172,7 @@ bool PlyReader::element_line() {
   if (!keep_name(1, element.name)) return false;
   element.row_count = count;
   element.byte_offset = words_[0].byte_offset;
-  element.line = line_;
+  element.line = static_cast<std::uint32_t>(line_ < 0xFFFFFFFFu ? line_ : 0xFFFFFFFFu);
   element.first_property = static_cast<std::uint16_t>(property_total_);
   if (word_is(1, "vertex")) {
     element.kind = Kind::kVertex;
@@ -220,6 +220,13 @@ PlyReader::Role PlyReader::role_of(std::size_t word, Kind kind) const {
   return Role::kSkip;
 }
 
+std::uint8_t PlyReader::attribute_of(std::size_t word, Kind kind) const {
+  const char* const names[kAttributes] = {"nx", "ny", "nz", "red", "green", "blue"};
+  std::uint8_t attribute = 0;
+  while (attribute < kAttributes && !(kind == Kind::kVertex && word_is(word, names[attribute]))) ++attribute;
+  return attribute;
+}
+
 bool PlyReader::property_line() {
   const bool is_list = word_count_ > 1 && word_is(1, "list");
   const std::size_t name_word = is_list ? 4 : 2;
@@ -236,6 +243,7 @@ bool PlyReader::property_line() {
   property.type = type_from(name_word - 1);
   if (property.type == Type::kNone) return fail_at_word(PlyError::kUnknownType, name_word - 1);
   property.role = role_of(name_word, element.kind);
+  property.attribute = is_list ? kNoAttribute : attribute_of(name_word, element.kind);
   const bool is_coordinate = element.kind == Kind::kVertex && property.role != Role::kSkip;
   const bool is_index = element.kind != Kind::kVertex && property.role != Role::kSkip;
   for (std::size_t i = 0; i < element.property_count; ++i) {
@@ -272,13 +280,27 @@ bool PlyReader::check_element(std::uint32_t element_index) {
   return true;
 }
 
+// A normal or a colour counts if all three parts of it are there.
+void PlyReader::note_attributes(const Element& element) {
+  std::uint32_t found = 0;
+  for (std::size_t i = 0; i < element.property_count; ++i) {
+    const std::uint8_t attribute = properties_[element.first_property + i].attribute;
+    if (attribute < kAttributes) found |= 1u << attribute;
+  }
+  constexpr std::uint32_t kNormal = 7, kColor = 7u << 3;
+  header_.has_normals = (found & kNormal) == kNormal;
+  header_.has_colors = (found & kColor) == kColor;
+}
+
 bool PlyReader::end_header() {
   if (!require_words(1)) return false;
   if (!has_format_) return fail_at_word(PlyError::kMissingFormat, 0);
   bool has_vertices = false;
   for (std::uint32_t i = 0; i < element_count_; ++i) {
     if (!check_element(i)) return false;
-    has_vertices = has_vertices || elements_[i].kind == Kind::kVertex;
+    if (elements_[i].kind != Kind::kVertex) continue;
+    has_vertices = true;
+    note_attributes(elements_[i]);
   }
   if (!has_vertices) return fail_at_word(PlyError::kNoVertexElement, 0);
 

@@ -140,6 +140,10 @@ void PlyReader::lay_out_rows() {
   for (std::size_t i = 0; i < element.property_count; ++i) {
     const Property& property = properties_[element.first_property + i];
     if (property.count_type == Type::kNone) {
+      if (property.attribute < kAttributes) {
+        layout_.attribute_offset_bytes[property.attribute] = bytes;
+        layout_.attribute_types[property.attribute] = property.type;
+      }
       if (property.role != Role::kSkip) {
         const std::size_t axis = static_cast<std::size_t>(property.role) - static_cast<std::size_t>(Role::kX);
         layout_.offset_bytes[axis] = bytes;
@@ -202,6 +206,7 @@ void PlyReader::end_property() {
   if (++property_ < elements_[element_].property_count) return;
   property_ = 0;
   if (elements_[element_].kind == Kind::kVertex && !output_.vertices.empty()) {
+    keep_attributes(batch_);
     output_.vertices[batch_++] =
         Vec3(std::bit_cast<float>(coordinate_bits_[0]), std::bit_cast<float>(coordinate_bits_[1]),
              std::bit_cast<float>(coordinate_bits_[2]));
@@ -231,6 +236,51 @@ bool PlyReader::coordinate(std::uint32_t float_bits, std::uint64_t byte_offset) 
   coordinate_bits_[static_cast<std::size_t>(current_property().role) - static_cast<std::size_t>(Role::kX)] = float_bits;
   end_property();
   return true;
+}
+
+// Whether the current output has a place for a property that is otherwise skipped.
+bool PlyReader::is_kept(const Property& property) const {
+  if (property.attribute >= kAttributes || output_.vertices.empty()) return false;
+  return property.attribute < 3 ? header_.has_normals && !output_.normals.empty()
+                                : header_.has_colors && !output_.colors.empty();
+}
+
+float PlyReader::attribute_value(std::uint64_t bits, Type type, std::uint8_t attribute) {
+  float value = 0.0f;
+  switch (type) {
+    case Type::kInt8:
+      value = static_cast<float>(static_cast<std::int8_t>(bits));
+      break;
+    case Type::kInt16:
+      value = static_cast<float>(static_cast<std::int16_t>(bits));
+      break;
+    case Type::kInt32:
+      value = static_cast<float>(static_cast<std::int32_t>(bits));
+      break;
+    case Type::kFloat32:
+      value = std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+      break;
+    case Type::kFloat64:
+      value = std::bit_cast<float>(float_bits_from_double_bits(bits));
+      break;
+    default:
+      value = static_cast<float>(bits);
+      break;
+  }
+  if (!are_finite_bits(std::bit_cast<std::uint32_t>(value))) return 0.0f;
+  if (attribute < 3) return value;
+  // Wider integers hold bytes too, where a writer knew no other type.
+  if (!is_floating(type)) value = value / (type == Type::kUint16 ? 65535.0f : 255.0f);
+  return value < 0.0f ? 0.0f : smaller(value, 1.0f);
+}
+
+void PlyReader::keep_attributes(std::size_t item) {
+  if (header_.has_normals && !output_.normals.empty()) {
+    output_.normals[item] = Vec3(attributes_[0], attributes_[1], attributes_[2]);
+  }
+  if (header_.has_colors && !output_.colors.empty()) {
+    output_.colors[item] = Vec3(attributes_[3], attributes_[4], attributes_[5]);
+  }
 }
 
 bool PlyReader::emit_triangle(const UVec3& triangle, std::uint64_t byte_offset) {
@@ -269,6 +319,11 @@ bool PlyReader::index(std::int64_t value, std::uint64_t byte_offset) {
 
 namespace {
 
+bool holds(const PlyOutput& output, std::uint64_t vertex_count) {
+  return vertex_count <= output.vertices.size() && (output.normals.empty() || vertex_count <= output.normals.size()) &&
+         (output.colors.empty() || vertex_count <= output.colors.size());
+}
+
 PlyResult read_whole(std::span<const std::byte> input, PlyReader& reader, PlyOutput output, bool keep) {
   PlyResult result;
   std::size_t triangle_places = output.triangles.size();
@@ -277,12 +332,16 @@ PlyResult read_whole(std::span<const std::byte> input, PlyReader& reader, PlyOut
     input = input.subspan(step.consumed_bytes);
     if (step.event == PlyEvent::kEnd || step.event == PlyEvent::kError) break;
     if (!keep) continue;
-    if (step.event == PlyEvent::kHeader && reader.header().vertex_count > output.vertices.size()) {
+    if (step.event == PlyEvent::kHeader && !holds(output, reader.header().vertex_count)) {
       result.error = PlyError::kVertexSpanTooSmall;
       result.header = reader.header();
       return result;
     }
-    if (step.event == PlyEvent::kVertices) output.vertices = output.vertices.subspan(step.item_count);
+    if (step.event == PlyEvent::kVertices) {
+      output.vertices = output.vertices.subspan(step.item_count);
+      if (!output.normals.empty()) output.normals = output.normals.subspan(step.item_count);
+      if (!output.colors.empty()) output.colors = output.colors.subspan(step.item_count);
+    }
     if (step.event == PlyEvent::kTriangles) output.triangles = output.triangles.subspan(step.item_count);
     if (step.event != PlyEvent::kNeedInput) reader.set_output(output);
   }
@@ -305,8 +364,12 @@ PlyResult count_ply(std::span<const std::byte> input, const PlyConfig& config) {
 
 PlyResult read_ply(std::span<const std::byte> input, std::span<Vec3> vertices, std::span<UVec3> triangles,
                    const PlyConfig& config) {
+  return read_ply(input, PlyOutput{vertices, triangles}, config);
+}
+
+PlyResult read_ply(std::span<const std::byte> input, const PlyOutput& output, const PlyConfig& config) {
   PlyReader reader(config);
-  return read_whole(input, reader, {vertices, triangles}, true);
+  return read_whole(input, reader, output, true);
 }
 
 }  // namespace gridiron

@@ -34,6 +34,11 @@ struct PlyStep {
 struct PlyOutput {
   std::span<Vec3> vertices;    ///< x y z as the input has them
   std::span<UVec3> triangles;  ///< indices of vertices
+
+  /// Of the same vertices: empty, or as many places as `vertices`. Not written where the header declares none. A value
+  /// that is not finite is 0; as everywhere, a number is checked whether it is kept or not.
+  std::span<Vec3> normals{};  ///< nx ny nz as the input has them, of any length
+  std::span<Vec3> colors{};   ///< red green blue, 0..1: bytes / 255, 16-bit values / 65535, others clamped
 };
 
 /// Reads one PLY input that arrives in pieces of any size.
@@ -85,6 +90,8 @@ class PlyReader {
   enum class Role : std::uint8_t { kSkip, kX, kY, kZ, kFaceIndices, kStripIndices };
   enum class Kind : std::uint8_t { kOther, kVertex, kFace, kStrip };
 
+  static constexpr std::uint8_t kAttributes = 6, kNoAttribute = 6;  // nx ny nz red green blue
+
   struct Text {
     std::uint16_t begin = 0;  // in names_
     std::uint16_t bytes = 0;
@@ -94,11 +101,12 @@ class PlyReader {
     Type count_type = Type::kNone;  // kNone: a scalar
     Type type = Type::kNone;
     Role role = Role::kSkip;
+    std::uint8_t attribute = kNoAttribute;  // of a vertex, skipped unless there is a place for it: 0..5
   };
   struct Element {
     std::uint64_t row_count = 0;
     std::uint64_t byte_offset = 0;  // of its header line
-    std::uint64_t line = 0;
+    std::uint32_t line = 0;  // saturates
     Text name;
     std::uint16_t first_property = 0;
     std::uint16_t property_count = 0;
@@ -115,6 +123,8 @@ class PlyReader {
     std::uint32_t offset_bytes[3] = {};  // vertices: x y z; faces: [0] the list's count
     Type types[3] = {};
     bool all_float = false;
+    std::uint32_t attribute_offset_bytes[kAttributes] = {};
+    Type attribute_types[kAttributes] = {};
   };
   static constexpr std::size_t kWordCapacity = 5;  // property list <count> <type> <name>
 
@@ -142,7 +152,9 @@ class PlyReader {
   bool keep_name(std::size_t word, Text& name);
   bool same_name(Text name, std::size_t word) const;
   Role role_of(std::size_t word, Kind kind) const;
+  std::uint8_t attribute_of(std::size_t word, Kind kind) const;
   bool check_element(std::uint32_t element);
+  void note_attributes(const Element& element);
 
   // Body.
   void begin_element(std::uint32_t element);
@@ -162,11 +174,15 @@ class PlyReader {
   std::size_t quick_float_vertices(const std::byte* bytes, std::size_t row_count);
   template <bool kSwap, class Count>
   std::size_t quick_faces(const std::byte* bytes, std::size_t row_count);
+  void quick_attributes(const std::byte* bytes, std::size_t row_count, std::size_t first_item);
   std::uint64_t load_bits(const std::byte* bytes, Type type) const;
   bool binary_value(std::uint64_t bits, Type type, std::uint64_t byte_offset);
   bool list_count(std::int64_t count, std::uint64_t byte_offset);
   bool coordinate(std::uint32_t float_bits, std::uint64_t byte_offset);
   bool index(std::int64_t value, std::uint64_t byte_offset);
+  [[nodiscard]] bool is_kept(const Property& property) const;
+  static float attribute_value(std::uint64_t bits, Type type, std::uint8_t attribute);
+  void keep_attributes(std::size_t item);
   bool emit_triangle(const UVec3& triangle, std::uint64_t byte_offset);
   [[nodiscard]] std::size_t room(std::size_t span_items, std::size_t wanted) const;
   [[nodiscard]] const Property& current_property() const {
@@ -228,6 +244,7 @@ class PlyReader {
 
   // The row being assembled.
   std::uint32_t coordinate_bits_[3] = {};
+  float attributes_[kAttributes] = {};
   std::uint64_t corner_ = 0;  // corners of the polygon or strip so far
   std::uint32_t first_ = 0, previous_ = 0;
   std::size_t batch_ = 0;  // items waiting in the output span
@@ -248,6 +265,12 @@ struct PlyResult {
 ///
 /// Errors: any PlyError; the spans then hold no usable mesh.
 [[nodiscard]] PlyResult read_ply(std::span<const std::byte> input, std::span<Vec3> vertices, std::span<UVec3> triangles,
+                                 const PlyConfig& config = {});
+
+/// The same with normals and colours where the output has places for them and the header declares them.
+///
+/// Errors: kVertexSpanTooSmall too if there are places, but fewer than vertices.
+[[nodiscard]] PlyResult read_ply(std::span<const std::byte> input, const PlyOutput& output,
                                  const PlyConfig& config = {});
 
 }  // namespace gridiron

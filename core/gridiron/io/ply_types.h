@@ -98,6 +98,8 @@ struct PlyHeader {
   std::uint64_t strip_row_count = 0;  ///< rows of "tristrips"; each may hold many strips
   bool has_faces = false;             ///< an element "face" is declared, perhaps with 0 rows
   bool has_strips = false;            ///< an element "tristrips" is declared, perhaps with 0 rows
+  bool has_normals = false;           ///< the vertices have nx, ny and nz
+  bool has_colors = false;            ///< the vertices have red, green and blue
 };
 
 /// What was read so far; final at PlyEvent::kEnd.

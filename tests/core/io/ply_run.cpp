@@ -21,7 +21,8 @@ PlyOutcome run_ply(std::string_view input, const Chunking& chunking, const PlyRu
   auto reader = std::make_unique<PlyReader>(options.config);
   std::vector<Vec3> vertices(options.vertex_batch);
   std::vector<UVec3> triangles(options.triangle_batch);
-  reader->set_output({vertices, triangles});
+  std::vector<Vec3> normals(options.vertex_batch, Vec3(-77.0f)), colors = normals;
+  reader->set_output({vertices, triangles, normals, colors});
 
   const auto take = [&](const PlyStep& step) {
     if (step.event == PlyEvent::kNeedInput) return;
@@ -33,6 +34,8 @@ PlyOutcome run_ply(std::string_view input, const Chunking& chunking, const PlyRu
         const Vec3& v = vertices[i];
         outcome.vertices.push_back(
             {std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y), std::bit_cast<std::uint32_t>(v.z)});
+        outcome.normals.push_back({normals[i].x, normals[i].y, normals[i].z});
+        outcome.colors.push_back({colors[i].x, colors[i].y, colors[i].z});
       }
     }
     if (step.event == PlyEvent::kTriangles) {
@@ -43,7 +46,7 @@ PlyOutcome run_ply(std::string_view input, const Chunking& chunking, const PlyRu
       }
     }
     // What the reader said is done with; whatever it still reads of it would be seen.
-    std::fill(vertices.begin(), vertices.end(), Vec3(-77.0f));
+    for (auto* const values : {&vertices, &normals, &colors}) std::fill(values->begin(), values->end(), Vec3(-77.0f));
     std::fill(triangles.begin(), triangles.end(), UVec3(0xDEADBEEFu));
   };
 

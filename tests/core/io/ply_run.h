@@ -26,6 +26,7 @@ struct PlyOutcome {
   std::vector<Batch> batches;
   std::vector<std::array<std::uint32_t, 3>> vertices;  ///< as float bits
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::array<float, 3>> normals, colors;  ///< of each vertex kept; -77 where the input has none
   bool operator==(const PlyOutcome&) const = default;
 };
 

@@ -374,7 +374,7 @@ TEST(Animate, WhatCannotBeDoneIsTold) {
   folder.write("a.png", "\x89PNG\r\n\x1a\n");
   std::filesystem::create_directories(folder.path("nested/b.ply"));
   std::filesystem::create_symlink("nowhere", folder.folder() / "link");
-  const std::string takes = "; animate takes PLY meshes, text scenes (NFF), and folders of either\n";
+  const std::string takes = "; animate takes meshes (PLY, OBJ, STL, glTF), text scenes (NFF), and folders of either\n";
   const struct {
     Words arguments;
     int exit_code;

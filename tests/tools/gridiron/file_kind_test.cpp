@@ -27,8 +27,8 @@ TEST(FileKind, ScenesAreKnownByTheirContent) {
       {"p 3\n0 0 0\n", SceneKind::kText},
       {"m mesh.ply\n", SceneKind::kText},
       {"sn on\n", SceneKind::kText},
-      {"v 0.1 0.2 0.3\n", SceneKind::kUnknown},  // OBJ
-      {"s off\n", SceneKind::kUnknown},
+      {"v 0.1 0.2 0.3\n", SceneKind::kMesh},  // OBJ
+      {"s off\n", SceneKind::kMesh},
       {"f 1/2/3 4/5/6 7/8/9\n", SceneKind::kUnknown},
       {"s 0\0 0 0 1\n"s, SceneKind::kUnknown},
       {"plywood\n", SceneKind::kUnknown},
@@ -45,6 +45,23 @@ TEST(FileKind, ScenesAreKnownByTheirContent) {
   EXPECT_EQ(tool::scene_kind_of(bytes_of("spher 0 0 0 1\n"), "a.nff"), SceneKind::kText);
   EXPECT_EQ(tool::scene_kind_of(bytes_of("v 0.1 0.2 0.3\n"), "a.nff"), SceneKind::kUnknown);
   EXPECT_EQ(tool::scene_kind_of(bytes_of(""), "a.nff"), SceneKind::kUnknown);
+}
+
+TEST(FileKind, ModelsAreKnownByTheirContentElseByTheirName) {
+  const std::string stl = std::string(80, ' ') + "\1\0\0\0"s + std::string(50, '\0');
+  const struct {
+    std::string content, name, ending;
+  } cases[] = {
+      {"v 1 2 3\n", "a", "obj"},       {"s 0 0 0 1\n", "a", ""},         {"s 0 0 0 1\n", "a.OBJ", "obj"},
+      {"glTF\2\0\0\0"s, "a.obj", "glb"}, {"{\"asset\": {}}", "a", "gltf"}, {"{\"a\": 1}", "a.gltf", "gltf"},
+      {"solid x\n", "a", "stl"},        {stl, "a", "stl"},               {"solid" + stl.substr(5), "a.obj", "stl"},
+      {"\x89PNG", "a.obj", ""},         {"\x1F\x8B", "a.obj", ""},       {"PK\x03\x04", "a.3mf", "3mf"},
+      {"PK\x03\x04", "a", ""},         {"ply\n", "a.obj", ""},          {"", "a.obj", ""},
+      {"OFF\n", "a", "off"},            {"anything", "a.fbx", "fbx"},    {"v 1 2 3\n", "a.nff", ""}};
+  for (const auto& each : cases) {
+    EXPECT_EQ(tool::model_ending(bytes_of(each.content), each.name, each.content.size()), each.ending)
+        << each.content.substr(0, 10) << " " << each.name;
+  }
 }
 
 TEST(FileKind, WhatIsNotReadIsNamed) {

@@ -102,7 +102,7 @@ TEST_F(Inputs, AnimationsReadPipesOnce) {
   expect_done("animate <(cat text) -o pipes" + options);
   EXPECT_EQ(bytes_of("pipes/frame0000.png"), bytes_of("files/text.png"));
   expect_done("animate - --path <(printf 'frame 0\\neye 0 0 5\\nat 0 0 0\\n') -o pipes" + options + " < mesh");
-  expect_failure("animate packed -o pipes", 1, "packed: is a packed scene; animate takes PLY meshes");
+  expect_failure("animate packed -o pipes", 1, "packed: is a packed scene; animate takes meshes (PLY, OBJ");
   expect_failure("animate - --path - -o pipes < mesh", 2, "--path and FRAMES both read");
 }
 
@@ -136,9 +136,10 @@ TEST_F(Inputs, FilesOfATextInAPipeAreLookedForInTheCurrentFolder) {
 }
 
 TEST_F(Inputs, OtherFilesAreNamedWithWhatIsReadInstead) {
-  folder_.write("obj.ply", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder_.write("picture.ply", "\x89PNG\r\n\x1A\n");
   folder_.write("empty.gri", "");
-  expect_failure("render obj.ply", 1, "obj.ply: is an OBJ mesh; expected a scene: a PLY mesh, a text scene (NFF) or");
+  expect_failure("render picture.ply", 1,
+                 "picture.ply: is a PNG picture; expected a scene: a mesh (PLY, OBJ, STL, glTF), a text scene (NFF)");
   expect_failure("render empty.gri", 1, "empty.gri: is empty; expected a scene");
   expect_failure("render - < /dev/null", 1, "/dev/stdin: is empty; expected a scene");
   expect_failure("render /dev/zero", 1, "/dev/zero: is of no known kind: it begins with '\\x00");

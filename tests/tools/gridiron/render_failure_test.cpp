@@ -46,8 +46,10 @@ TEST(RenderFailure, BadInputNamesFileAndLineOrByte) {
     expect_failure(folder, {"pack", input.input, "-o", "out.gri"}, 1, input.words);
   }
   expect_failure(folder, {"render", "empty.ply"}, 1,
-                 "; expected a scene: a PLY mesh, a text scene (NFF) or a packed scene (made by 'gridiron pack')\n");
-  expect_failure(folder, {"pack", "empty.ply", "-o", "out.gri"}, 1, "; pack takes a PLY mesh or a text scene (NFF)\n");
+                 "; expected a scene: a mesh (PLY, OBJ, STL, glTF), a text scene (NFF) or a packed scene (made by "
+                 "'gridiron pack')\n");
+  expect_failure(folder, {"pack", "empty.ply", "-o", "out.gri"}, 1,
+                 "; pack takes a mesh (PLY, OBJ, STL, glTF) or a text scene (NFF)\n");
 }
 
 TEST(RenderFailure, ScenesWithoutATriangleToTrace) {

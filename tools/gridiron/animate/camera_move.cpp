@@ -64,7 +64,8 @@ void CameraMove::prepare() {
   PictureRequest picture{request_.view, std::nullopt, request_.size};
   if (request_.camera) picture.camera = read_camera_file(*request_.camera);
   const InputHash hash;
-  SceneInput input = read_scene_input(request_.scene.input, request_.scene.tolerance, picture);
+  SceneInput input =
+      read_scene_input(request_.scene.input, request_.scene.tolerance, picture, kSceneExpected, request_.scene.model);
   content_ = hash.value();
   if (path_) {
     views_ = views_of_path(*path_, request_.view);

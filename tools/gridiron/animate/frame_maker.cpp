@@ -21,16 +21,21 @@
 namespace gridiron::tool {
 namespace {
 
+bool is_ply(const std::filesystem::path& path) {
+  return path.extension() == ".ply" || path.extension() == ".PLY";
+}
+
 // The meshes of a folder, or its text scenes, by name.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> meshes, scenes;
+  std::vector<std::filesystem::path> meshes, models, scenes;
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const SceneKind kind = scene_kind_by_ending(entry->path());
-    if (kind == SceneKind::kMesh) meshes.push_back(entry->path());
+    if (kind == SceneKind::kMesh) (is_ply(entry->path()) ? meshes : models).push_back(entry->path());
     if (kind == SceneKind::kText) scenes.push_back(entry->path());
   }
   if (error) input_error(folder, "cannot be read: " + error.message());
+  if (meshes.empty()) meshes = std::move(models);  // else those it was converted from, perhaps
   if (meshes.empty() && scenes.empty()) input_error(folder, "holds no file that ends with .ply or .nff");
   if (!meshes.empty() && !scenes.empty()) {
     input_error(folder, "holds files that end with .ply and with .nff; name the ones that are frames");

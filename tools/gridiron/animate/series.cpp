@@ -13,13 +13,15 @@
 namespace gridiron::tool {
 namespace {
 
-constexpr const char* kExpected = "animate takes PLY meshes, text scenes (NFF), and folders of either";
+constexpr const char* kExpected =
+    "animate takes meshes (PLY, OBJ, STL, glTF), text scenes (NFF), and folders of either";
 
 struct SeriesFrame {
   std::filesystem::path input;
   std::string picture{};
   SceneKind kind = SceneKind::kUnknown;  ///< as foreseen
   std::optional<SceneInput> scene{};     ///< of a stream, which is read once
+  std::optional<double> moment{};        ///< of its animation, 0..1
   bool is_read = false;                  ///< content and own are known
   std::uint64_t content = 0;
   SceneView own{};                      ///< of a text scene
@@ -30,6 +32,7 @@ class Series final : public FrameMaker {
  public:
   Series(const AnimateRequest& request, std::vector<std::filesystem::path> inputs)
       : animate_(request), request_(request.render) {
+    if (animate_.animation) inputs = std::vector<std::filesystem::path>(*animate_.animation, inputs.front());
     std::set<SceneKind> kinds;
     std::set<std::string> pictures;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -37,8 +40,9 @@ class Series final : public FrameMaker {
       frame.kind = foreseen_kind(frame.input);
       require_kind(frame.input, frame.kind == SceneKind::kPacked);
       if (kinds.insert(frame.kind).second) check_foreseen(animate_, frame.input);
-      frame.picture =
-          is_descriptor(frame.input) ? numbered_picture(i, inputs.size()) : frame.input.stem().string() + ".png";
+      if (animate_.animation) frame.moment = inputs.size() == 1 ? 0.0 : double(i) / double(inputs.size() - 1);
+      const bool has_number = frame.moment || is_descriptor(frame.input);
+      frame.picture = has_number ? numbered_picture(i, inputs.size()) : frame.input.stem().string() + ".png";
       if (!pictures.insert(frame.picture).second) usage_error("two frames would be called " + frame.picture);
       frames_.push_back(std::move(frame));
     }
@@ -81,8 +85,13 @@ SceneInput Series::read(SeriesFrame& frame) const {
   if (frame.scene) return *std::exchange(frame.scene, std::nullopt);
   stop_if_interrupted();
   const InputHash hash;
+  ImportOptions model = request_.scene.model;
+  model.moment = frame.moment;
   SceneInput input = read_scene_input(frame.input, request_.scene.tolerance,
-                                      PictureRequest{request_.view, camera_, request_.size}, kExpected);
+                                      PictureRequest{request_.view, camera_, request_.size}, kExpected, model);
+  if (frame.moment && (!input.model || input.model->animation_seconds == 0)) {
+    input_error(frame.input, "has no animation, which --animation shows");
+  }
   require_kind(frame.input, std::holds_alternative<PackedScene>(input.content));
   frame.content = hash.value();
   frame.own = input.text ? input.text->view : SceneView{};
@@ -175,7 +184,7 @@ MadeFrame Series::make(std::size_t i, bool has_timeline, const FrameProgress& pr
   request.view = frame.framed.value_or(request_.view);
   RequestedFrame requested = complete_frame(request, std::move(input), camera_, stage_ ? &*stage_ : nullptr);
   choose_builder(animate_, requested.plan);
-  if (has_told_ && !request.scene.quiet) tell_notes(requested.input);
+  if (has_told_ && !frame.moment && !request.scene.quiet) tell_notes(requested.input);
   if (!std::exchange(has_told_, true)) tell_frame_notes(request, requested);
   FrameMemory memory(frame_memory_bytes(requested.input, requested.plan));
   if (!animate_.keeps_vertex_order) memory.vertex_order = &vertex_order_;

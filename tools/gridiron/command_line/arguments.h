@@ -22,6 +22,7 @@ struct AnimateRequest {
   std::filesystem::path output;               ///< folder, never empty
   std::optional<std::filesystem::path> path;  ///< of the camera
   std::optional<std::uint32_t> turntable;     ///< frames of a camera that goes around once
+  std::optional<std::uint32_t> animation;     ///< frames of the input's own animation, from its begin to its end
   std::optional<std::filesystem::path> film;
   std::optional<std::filesystem::path> timeline;  ///< of the first frame
   std::optional<float> frames_per_second;         ///< of the film; nothing: kUsualFramesPerSecond

@@ -40,8 +40,22 @@ void add_size(CLI::App& app, std::optional<CountPair>& size, const std::string& 
 
 void add_input(CLI::App& app, SceneRequest& scene) {
   add_input_file(app, "INPUT", scene.input,
-                 "scene: a PLY mesh, a text scene (NFF) or a packed scene, under any name; - is standard input");
+                 "scene: a mesh (PLY, OBJ, STL, glTF and others), a text scene (NFF) or a packed scene; - is standard "
+                 "input");
   add_tolerance(app, scene);
+  add_model_options(app, scene);
+}
+
+void add_model_options(CLI::App& app, SceneRequest& scene) {
+  constexpr std::uint32_t kMostSeconds = 86400;
+  const auto megabytes = [](const std::string& text) {
+    const std::optional<std::uint32_t> count = parse_count(text);
+    return count && *count >= 1 ? std::optional(std::uint64_t{*count} << 20) : std::nullopt;
+  };
+  add_parsed(app, "--import-memory", scene.model.memory_bytes, megabytes, "a whole number above 0", "MB",
+             "OBJ, STL, glTF and others: memory that reading one may take (default: half of the host's)");
+  add_count(app, "--import-time", scene.model.most_seconds, 1, kMostSeconds,
+            "OBJ, STL, glTF and others: seconds that reading one may take (default: 300)");
 }
 
 void add_tolerance(CLI::App& app, SceneRequest& scene) {

@@ -90,6 +90,7 @@ void add_quiet(CLI::App& app, bool& quiet);
 void add_size(CLI::App& app, std::optional<CountPair>& size, const std::string& help);
 void add_input(CLI::App& app, SceneRequest& scene);
 void add_tolerance(CLI::App& app, SceneRequest& scene);
+void add_model_options(CLI::App& app, SceneRequest& scene);
 void add_grid_options(CLI::App& app, SceneRequest& scene, std::string& machine);
 void add_threads(CLI::App& app, std::optional<std::uint32_t>& threads, const std::string& effect);
 void add_store(CLI::App& app, std::optional<sim::StoreSize>& store);

@@ -130,6 +130,13 @@ void complete_animation(AnimateRequest& animate, const std::string& machine) {
   if (animate.path && animate.turntable) usage_error("--path and --turntable: both move the camera");
   if (animate.path && render.camera) usage_error("--path and --camera: both are views of the whole frame");
   if (animate.path && render.view.from) usage_error("--path and --from: both say where the eye is");
+  if (animate.animation && (animate.path || animate.turntable)) {
+    usage_error("--animation: moves the model; --path and --turntable move the camera");
+  }
+  if (animate.animation && animate.inputs.size() != 1) usage_error("--animation: FRAMES is one model");
+  if (animate.animation && is_stream(input_path(animate.inputs.front()))) {
+    usage_error("--animation: reads the model once for each frame, which a stream cannot give");
+  }
   if (animate.frames_per_second && !animate.film) usage_error("--fps: is of --film");
   if (animate.timeline && animate.resume) usage_error("--timeline: is not made again by --resume");
   std::vector<NamedFile> inputs = {{"--camera", render.camera}, {"--path", animate.path}, machine_file(machine)};
@@ -144,8 +151,9 @@ void complete_animation(AnimateRequest& animate, const std::string& machine) {
 
 // Options of which a picture or a figure depends, as given. Views and the machine are compared by their content.
 std::map<std::string, std::string> given_options(const CLI::App& app) {
-  constexpr std::string_view kOthers[] = {"FRAMES",   "--output", "--path", "--camera",  "--film",    "--fps",
-                                          "--resume", "--quiet",  "--help", "--machine", "--threads", "--timeline"};
+  constexpr std::string_view kOthers[] = {"FRAMES",    "--output",   "--path",          "--camera",     "--film",
+                                          "--fps",     "--resume",   "--quiet",         "--help",       "--machine",
+                                          "--threads", "--timeline", "--import-memory", "--import-time"};
   std::map<std::string, std::string> options;
   for (const CLI::Option* option : app.get_options()) {
     const std::string name = option->get_single_name();
@@ -181,7 +189,7 @@ Finish add_animate(CLI::App& app) {
   AnimateRequest& animate = asked->request;
   RenderRequest& render = animate.render;
   app.add_option("FRAMES", animate.inputs,
-                 "PLY meshes or text scenes in the order of their frames; of a folder all .ply files, or all .nff "
+                 "meshes or text scenes in the order of their frames; of a folder all .ply files, or all .nff "
                  "files, by name; one mesh, text scene or packed scene with --path or --turntable; - is standard input")
       ->required()
       ->type_name("");
@@ -195,6 +203,9 @@ Finish add_animate(CLI::App& app) {
       "views; - is standard input");
   add_count(app, "--turntable", animate.turntable, 1, kMostFrames,
             "the camera goes once around the up axis in so many frames");
+  add_count(app, "--animation", animate.animation, 1, kMostFrames,
+            "the first animation of the one model (glTF and others) in so many frames, the first and the last moment "
+            "among them");
   add_output(app, "--film", animate.film, "film of all pictures, .mp4, .webm or .gif; needs ffmpeg");
   const auto rate = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
@@ -215,6 +226,7 @@ Finish add_animate(CLI::App& app) {
   app.add_flag("--resume", animate.resume,
                "keep the complete pictures of an earlier command with the same options and inputs");
   add_tolerance(app, render.scene);
+  add_model_options(app, render.scene);
   add_grid_options(app, render.scene, asked->machine);
   add_size(app, render.size, "pictures in pixels (default: the text scenes' own, else 1024x1024)");
   add_view_options(app, render);

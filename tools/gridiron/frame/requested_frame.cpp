@@ -99,8 +99,10 @@ RequestedFrame read_requested_frame(const RenderRequest& request, const std::vec
   declare_outputs(outputs);
   PictureRequest picture{request.view, std::nullopt, request.size};
   if (request.camera) picture.camera = read_camera_file(*request.camera);
-  RequestedFrame frame =
-      complete_frame(request, read_scene_input(request.scene.input, request.scene.tolerance, picture), picture.camera);
+  RequestedFrame frame = complete_frame(
+      request,
+      read_scene_input(request.scene.input, request.scene.tolerance, picture, kSceneExpected, request.scene.model),
+      picture.camera);
   tell_frame_notes(request, frame);
   return frame;
 }

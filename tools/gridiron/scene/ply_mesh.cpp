@@ -1,11 +1,13 @@
 // PLY files as meshes. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/io/ply_reader.h>
 
+#include <cmath>
 #include <string>
 
 #include "base/failure.h"
 #include "base/words.h"
 #include "files/interrupt.h"
+#include "import/srgb.h"
 #include "scene_input.h"
 
 namespace gridiron::tool {
@@ -22,6 +24,38 @@ namespace {
   throw Failure(ExitCode::kBadInput, message);
 }
 
+// Normals as directions. A triangle with a corner without one has none, and a material of its own that says so.
+void keep_normals(Mesh& mesh) {
+  std::vector<bool> is_normal(mesh.surface.normals.size());
+  for (std::size_t i = 0; i < is_normal.size(); ++i) {
+    Vec3& normal = mesh.surface.normals[i];
+    const double x = normal.x, y = normal.y, z = normal.z;
+    const double length = std::sqrt(x * x + y * y + z * z);
+    is_normal[i] = length > 0;
+    normal = length > 0
+                 ? Vec3(static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length))
+                 : Vec3(0, 0, 1);
+  }
+  mesh.surface.materials = {{.smooth_normals = true}};
+  mesh.surface.triangle_normals = mesh.triangles;
+  mesh.surface.triangle_materials.assign(mesh.triangles.size(), 0);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const UVec3& corners = mesh.triangles[i];
+    if (is_normal[corners.x] && is_normal[corners.y] && is_normal[corners.z]) continue;
+    if (mesh.surface.materials.size() == 1) mesh.surface.materials.push_back({});
+    mesh.surface.triangle_normals[i] = UVec3(kNoNormal);
+    mesh.surface.triangle_materials[i] = 1;
+  }
+}
+
+// Colours of PLY files are shown as they are, which is sRGB.
+void keep_colors(Mesh& mesh) {
+  for (Vec3& color : mesh.surface.colors) {
+    color = Vec3(linear_of_srgb(color.x), linear_of_srgb(color.y), linear_of_srgb(color.z));
+  }
+  mesh.surface.triangle_colors = mesh.triangles;
+}
+
 }  // namespace
 
 Mesh read_ply_mesh(std::span<const std::byte> bytes, const std::filesystem::path& path) {
@@ -32,8 +66,14 @@ Mesh read_ply_mesh(std::span<const std::byte> bytes, const std::filesystem::path
   Mesh mesh;
   mesh.vertices.resize(counted.counts.vertices);
   mesh.triangles.resize(counted.counts.triangles);
-  const PlyResult result = read_ply(bytes, mesh.vertices, mesh.triangles);
+  const bool has_normals = counted.header.has_normals && !mesh.triangles.empty();
+  const bool has_colors = counted.header.has_colors && !mesh.triangles.empty();
+  if (has_normals) mesh.surface.normals.resize(mesh.vertices.size());
+  if (has_colors) mesh.surface.colors.resize(mesh.vertices.size());
+  const PlyResult result = read_ply(bytes, {mesh.vertices, mesh.triangles, mesh.surface.normals, mesh.surface.colors});
   if (result.error != PlyError::kNone) fail(path, result);
+  if (has_normals) keep_normals(mesh);
+  if (has_colors) keep_colors(mesh);
   return mesh;
 }
 

@@ -140,6 +140,36 @@ void require_grid(const SceneInput& input, const GridRecord& grid, const SceneRe
   }
 }
 
+void read_model(InputFile file, const ImportRequest& request, SceneInput& input) {
+  ImportedModel model = import_model(std::move(file), request);
+  for (const NeighbourFile& neighbour : model.neighbours) note_read_file(neighbour.path, neighbour.content);
+  input.content = std::move(model.mesh);
+  input.model = std::move(model.report);
+}
+
+// "a, b and c".
+std::string words_of_list(const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    list += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  }
+  return list;
+}
+
+void tell_model(const SceneInput& input) {
+  const ImportReport& report = *input.model;
+  const Mesh& mesh = std::get<Mesh>(input.content);
+  std::string words = report.format + ", " + words_of_count(report.meshes) + (report.meshes == 1 ? " mesh" : " meshes");
+  if (!mesh.surface.materials.empty()) words += ", " + words_of_count(mesh.surface.materials.size(), "material");
+  words += ", " + words_of_count(mesh.triangles.size(), "triangle");
+  if (!mesh.surface.triangle_normals.empty()) words += ", normals";
+  if (!mesh.surface.triangle_colors.empty()) words += ", colours";
+  if (!report.frame.empty()) words += "; " + report.frame;
+  std::fprintf(stderr, "%s: %s; read with %s\n", input.path.c_str(), words.c_str(), report.reader.c_str());
+  if (report.ignored.empty()) return;
+  std::fprintf(stderr, "%s: ignored: %s\n", input.path.c_str(), words_of_list(report.ignored).c_str());
+}
+
 void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
   if (tolerance && kind != SceneKind::kText) usage_error("--tolerance: applies to text scenes (NFF) only");
 }
@@ -149,7 +179,8 @@ void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
 SceneKind foreseen_kind(const std::filesystem::path& path) {
   if (is_stream(path)) return SceneKind::kUnknown;
   try {
-    return scene_kind_of(InputReader(path, kSceneExpected).head(), path);
+    const InputReader reader(path, kSceneExpected);
+    return scene_kind_of(reader.head(), path, reader.file_bytes());
   } catch (const Failure& failure) {
     if (failure.code() != ExitCode::kBadInput) throw;
     return scene_kind_by_ending(path);
@@ -203,17 +234,21 @@ PictureRequest complete_request(PictureRequest request, const SceneView& own) {
 }
 
 SceneInput read_scene_input(const std::filesystem::path& path, std::optional<float> tolerance,
-                            const std::optional<PictureRequest>& picture, const char* expected) {
+                            const std::optional<PictureRequest>& picture, const char* expected,
+                            const ImportOptions& model_options) {
   const Stopwatch stopwatch;
   const Stage stage(path, "reading");
   SceneInput input{.path = path, .content = Mesh{}};
   InputReader reader(path, expected);
-  const SceneKind kind = scene_kind_of(reader.head(), path);
+  const SceneKind kind = scene_kind_of(reader.head(), path, reader.file_bytes());
   if (kind == SceneKind::kUnknown) reader.refuse_content();
+  const std::string ending = model_ending(reader.head(), path, reader.file_bytes());
   require_tolerance(tolerance, kind);
   InputFile file = reader.read_all(kind == SceneKind::kText ? kMostSceneBytes : kAnySize);
   name_in_shortage(path, "read it", [&] {
-    if (kind == SceneKind::kMesh) {
+    if (!ending.empty()) {
+      read_model(std::move(file), {.path = path, .ending = ending, .options = model_options}, input);
+    } else if (kind == SceneKind::kMesh) {
       input.content = read_ply_mesh(file.bytes, path);
     } else if (kind == SceneKind::kPacked) {
       input.content = open_packed_scene(std::move(file), path);
@@ -226,6 +261,7 @@ SceneInput read_scene_input(const std::filesystem::path& path, std::optional<flo
 }
 
 void tell_notes(const SceneInput& input) {
+  if (input.model) tell_model(input);
   if (!input.text) return;
   for (const SceneNote& note : input.text->notes) {
     std::fprintf(stderr, "%s:%llu: note: %s\n", input.path.c_str(), static_cast<unsigned long long>(note.line),

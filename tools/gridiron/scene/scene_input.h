@@ -19,6 +19,7 @@
 #include "files/file_kind.h"
 #include "files/input_file.h"
 #include "import/mesh.h"
+#include "import/model_import.h"
 #include "scene_request.h"
 #include "scene_text/scene_description.h"
 #include "scene_text/scene_effects.h"
@@ -47,10 +48,11 @@ struct SceneInput {
   HostSeconds load_seconds{};             ///< of reading and checking
   std::optional<SceneEffects> effects{};  ///< beside a Mesh: of a text scene, or of a look
   std::optional<TextScene> text{};        ///< beside a Mesh and its effects
+  std::optional<ImportReport> model{};    ///< of a Mesh that Assimp has read
 };
 
 inline constexpr const char* kSceneExpected =
-    "expected a scene: a PLY mesh, a text scene (NFF) or a packed scene (made by 'gridiron pack')";
+    "expected a scene: a mesh (PLY, OBJ, STL, glTF), a text scene (NFF) or a packed scene (made by 'gridiron pack')";
 
 /// A command's settings of a picture; the others come from a text scene with a view.
 struct PictureRequest {
@@ -82,14 +84,16 @@ void require_renderable(const SceneInput& input);
 /// Reads the scene. @param tolerance  of round shapes in a text scene; nothing: the reader's own, which uses `picture`,
 /// completed by complete_request(), if given. @param expected  of the file, for messages.
 /// Errors: Failure (kBadInput), `file:line: reason`, `file:byte N: reason`, or `file: ` with its kind and the expected
-/// one; kUsage if a tolerance is given for another kind of scene, or `picture` has no camera.
+/// one; kUsage if a tolerance is given for another kind of scene, or `picture` has no camera. @param model_options  how
+/// one is read with Assimp.
 [[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& path,
                                           std::optional<float> tolerance = std::nullopt,
                                           const std::optional<PictureRequest>& picture = std::nullopt,
-                                          const char* expected = kSceneExpected);
+                                          const char* expected = kSceneExpected,
+                                          const ImportOptions& model_options = {});
 
 /// Prints notes of a text scene on standard error: `file:line: note: text`, one line each; and the tolerance that the
-/// picture has chosen.
+/// picture has chosen. Of a model: what was read, and what was ignored.
 void tell_notes(const SceneInput& input);
 
 /// @returns the mesh of a PLY file. Errors as read_scene_input. @param path  what messages call the bytes.

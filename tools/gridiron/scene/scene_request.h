@@ -10,6 +10,7 @@
 #include "files/file_kind.h"
 #include "gridiron/device/configurations.h"
 #include "gridiron/device/machine_file.h"
+#include "import/model_import.h"
 #include "look_request.h"
 
 namespace gridiron::tool {
@@ -22,6 +23,7 @@ struct SceneRequest {
   std::optional<float> lambda;
   std::optional<std::uint32_t> macro_width;
   std::optional<float> tolerance;  ///< of round shapes in a text scene, world units; nothing: the reader's default
+  ImportOptions model{};           ///< how one is read with Assimp
   LookRequest look{};              ///< of the commands that render
   bool quiet = false;              ///< notes are not told
 };

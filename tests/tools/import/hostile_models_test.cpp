@@ -1,0 +1,218 @@
+// Hostile and damaged models: each ends with a mesh or with an error that names the file, within its limits.
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+
+#include "base/failure.h"
+#include "model_files.h"
+#include "support/sanitizers.h"
+#include "temporary_folder.h"
+
+namespace gridiron::test {
+namespace {
+
+constexpr tool::ImportOptions kLimits = {.memory_bytes = std::uint64_t{512} << 20, .most_seconds = 3};
+
+// @returns the error; empty: a mesh. Anything else ends the test.
+std::string error_of(const TemporaryFolder& folder, const std::string& name,
+                     const tool::ImportOptions& options = kLimits) {
+  try {
+    const tool::Mesh mesh = import_file(folder.path(name), options).mesh;
+    for (const UVec3& t : mesh.triangles) {
+      for (int i = 0; i < 3; ++i) EXPECT_LT(t[i], mesh.vertices.size());
+    }
+    return "";
+  } catch (const tool::Failure& failure) {
+    EXPECT_EQ(failure.code(), tool::ExitCode::kBadInput);
+    const std::string words = failure.what(), path = folder.path(name).string();
+    EXPECT_EQ(words.substr(0, path.size() + 2), path + ": ") << words;
+    EXPECT_GT(words.size(), path.size() + 10) << words;
+    return words;
+  }
+}
+
+std::string error_of_file(const std::string& name, const std::string& content) {
+  return error_of(TemporaryFolder(name, content), name);
+}
+
+const TestMesh& small() {
+  static const TestMesh mesh = rounded(make_box({0, 0, 0}, {1, 1, 1}));
+  return mesh;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  return place == std::string::npos ? text : text.replace(place, from.size(), to);
+}
+
+std::string repeated(const std::string& text, std::size_t count) {
+  std::string all;
+  all.reserve(text.size() * count);
+  for (std::size_t i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+// A chain of nodes, or children that are their own ancestors.
+std::string gltf_of_nodes(const std::string& nodes) {
+  return "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[" + nodes + "]}";
+}
+
+std::string chain_of_nodes(std::size_t count) {
+  std::string nodes;
+  for (std::size_t i = 0; i + 1 < count; ++i) nodes += "{\"children\":[" + std::to_string(i + 1) + "]},";
+  return gltf_of_nodes(nodes + "{}");
+}
+
+struct Hostile {
+  const char* name;
+  std::string content;
+  bool must_fail = true;
+};
+
+std::vector<Hostile> hostile_texts() {
+  const std::string gltf = gltf_text(small()), stl = stl_bytes(small());
+  std::string huge_stl = stl;
+  huge_stl.replace(80, 4, "\xFF\xFF\xFF\xFF");
+  std::string nan_stl = stl;
+  nan_stl.replace(96, 4, std::string("\0\0\xC0\x7F", 4));
+  return {
+      {"index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99\n"},
+      {"negative.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -9\n"},
+      {"zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n"},
+      {"large.obj", "v 0 0 0\nf 99999999999999999999 1 1\n"},
+      {"nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+      {"infinite.obj", "v 1e999 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+      {"no_faces.obj", "v 0 0 0\nv 1 0 0\n", false},
+      {"half.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2", false},
+      {"empty_face.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf\nf 1 2 3\n", false},
+      {"slashes.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//// 2/// 3/\n", false},
+      {"long_line.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf" + repeated(" 1 2 3", 20000) + "\n", false},
+      {"own_library.obj", "mtllib own_library.obj\n" + obj_text(small()), false},
+      {"device.obj", "mtllib /dev/zero\n" + obj_text(small()), false},
+      {"folder.obj", "mtllib .\n" + obj_text(small()), false},
+      {"words.obj", repeated("mtllib x\nusemtl y\no z\ng w\n", 2000) + obj_text(small()), false},
+      {"bytes.obj", "v 0 0 0\n" + std::string(5000, '\xFF'), false},
+      {"huge.stl", huge_stl},
+      {"nan.stl", nan_stl},
+      {"short.stl", stl.substr(0, 200)},
+      {"header.stl", stl.substr(0, 84), false},
+      {"words.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", false},
+      {"endless.stl", "solid x\n" + repeated("facet normal 0 0 1\n", 5000), false},
+      {"numbers.stl", "solid x\nfacet normal a b c\nouter loop\nvertex x y z\nvertex 1 2\nendloop\n", false},
+      {"asset.gltf", "{\"asset\":{}}"},
+      {"version.gltf", "{\"asset\":{\"version\":\"7.0\"}}"},
+      {"empty.gltf", "{\"asset\":{\"version\":\"2.0\"}}", false},
+      {"broken.gltf", gltf.substr(0, gltf.size() / 2)},
+      {"self.gltf", gltf_of_nodes("{\"children\":[0]}"), false},
+      {"ring.gltf", gltf_of_nodes("{\"children\":[1]},{\"children\":[0]}"), false},
+      {"fan.gltf", gltf_of_nodes("{\"children\":[1,1,1,1]},{\"children\":[2,2,2,2]},{}"), false},
+      {"lost_child.gltf", gltf_of_nodes("{\"children\":[77]}"), false},
+      {"deep_nodes.gltf", chain_of_nodes(100000), false},
+      {"deep_text.gltf", "{\"asset\":{\"version\":\"2.0\"},\"x\":" + repeated("[", 200000)},
+      {"scene.gltf", replaced(gltf, "\"scene\":0", "\"scene\":9"), false},
+      {"mesh.gltf", replaced(gltf, "\"mesh\":0", "\"mesh\":9"), false},
+      {"accessor.gltf", replaced(gltf, "\"POSITION\":0", "\"POSITION\":99")},
+      {"indices.gltf", replaced(gltf, "\"indices\":1", "\"indices\":99"), false},
+      {"types.gltf", replaced(gltf, "\"VEC3\"", "\"MAT4\""), false},
+      {"kind.gltf", replaced(gltf, "\"componentType\":5126", "\"componentType\":1"), false},
+      {"words.gltf", replaced(gltf, "\"count\":8", "\"count\":\"many\""), false},
+      {"count.gltf", replaced(gltf, "\"count\":8", "\"count\":4000000000"), false},
+      {"minus.gltf", replaced(gltf, "\"count\":8", "\"count\":-1"), false},
+      {"few.gltf", replaced(gltf, "\"count\":8", "\"count\":2")},
+      {"view.gltf", replaced(gltf, "\"bufferView\":0", "\"bufferView\":50"), false},
+      {"offset.gltf", replaced(gltf, "\"byteOffset\":0", "\"byteOffset\":4294967295"), false},
+      {"length.gltf", replaced(gltf, "\"byteLength\":96", "\"byteLength\":18446744073709551615"), false},
+      {"stride.gltf", replaced(gltf, "\"byteOffset\":0", "\"byteStride\":255,\"byteOffset\":0"), false},
+      {"buffer.gltf", gltf_text(small(), {.buffer_uri = "lost.bin"})},
+      {"own_buffer.gltf", gltf_text(small(), {.buffer_uri = "own_buffer.gltf"}), false},
+      {"device.gltf", gltf_text(small(), {.buffer_uri = "/dev/zero"})},
+      {"data.gltf", gltf_text(small(), {.buffer_uri = "data:application/octet-stream;base64,!!!!"}), false},
+      {"short_data.gltf", gltf_text(small(), {.buffer_uri = "data:application/octet-stream;base64,AAAA"}), false},
+      {"scale.gltf", gltf_text(small(), {.node = "\"mesh\":0,\"scale\":[1e38,1e38,1e38],"
+                                                 "\"translation\":[3e38,3e38,3e38]"})},
+      {"matrix.gltf", gltf_text(small(), {.node = "\"mesh\":0,\"matrix\":[1,2]"}), false},
+      {"rotation.gltf", gltf_text(small(), {.node = "\"mesh\":0,\"rotation\":[0,0,0,0]"}), false},
+      {"nothing.glb", "glTF"},
+      {"length.glb", glb_of("{\"asset\":{\"version\":\"2.0\"}}", "").replace(8, 4, "\xFF\xFF\xFF\xFF"), false},
+      {"json_length.glb", glb_bytes(small()).replace(12, 4, "\xFF\xFF\xFF\x7F")},
+      {"version.glb", glb_bytes(small()).replace(4, 4, "\x09\x09\x09\x09")},
+      {"no_buffer.glb", glb_of("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":100}]}", ""), false},
+      {"off.off", "OFF\n4000000000 4000000000 0\n"},
+      {"faces.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n", false},
+      {"words.dae", "<?xml version=\"1.0\"?><COLLADA version=\"1.4.0\">" + repeated("<node>", 50000)},
+      {"words.x3d", "<?xml version=\"1.0\"?><X3D>" + repeated("<Group>", 50000), false},
+      {"fbx.fbx", "Kaydara FBX Binary  \0\x1A\0" + std::string(200, '\xFF')},
+      {"3ds.3ds", std::string("MM") + std::string(100, '\xFF')},
+      {"blend.blend", "BLENDER-v279" + std::string(300, '\x41')},
+  };
+}
+
+TEST(HostileModels, EachEndsWithAMeshOrAnErrorThatNamesIt) {
+  const std::vector<Hostile> files = hostile_texts();
+  EXPECT_GE(files.size(), 60u);
+  for (const Hostile& file : files) {
+    SCOPED_TRACE(file.name);
+    const std::string error = error_of_file(file.name, file.content);
+    EXPECT_FALSE(file.must_fail && error.empty());
+  }
+}
+
+// Cut at places all over the file, and with bytes replaced at random. The seed reruns a case.
+TEST(HostileModels, DamagedFilesAreNoDanger) {
+  const std::vector<Vec3> normals(small().vertices.size(), Vec3(0, 0, 1));
+  const std::vector<std::array<float, 2>> uvs(small().vertices.size(), {0.5f, 0.5f});
+  const GltfParts parts = {.material = "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}",
+                           .normals = normals, .uvs = uvs,
+                           .picture = png_bytes(2, 2, std::vector<std::array<std::uint8_t, 3>>(4))};
+  const struct { const char* name; std::string content; } good[] = {
+      {"a.obj", obj_text(small())}, {"a.stl", stl_bytes(small())}, {"b.stl", stl_text(small())},
+      {"a.gltf", gltf_text(small(), parts)}, {"a.glb", glb_bytes(small(), parts)}};
+  for (const auto& file : good) {
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+      SCOPED_TRACE(std::string(file.name) + ", seed " + std::to_string(seed));
+      TestRandom random(seed);
+      std::string content = file.content;
+      if (seed % 3 == 0) {
+        content.resize(1 + random.below(static_cast<std::uint32_t>(content.size() - 1)));
+      } else {
+        for (std::uint64_t i = 0; i < seed; ++i) {
+          content[random.below(static_cast<std::uint32_t>(content.size()))] = static_cast<char>(random.next());
+        }
+      }
+      (void)error_of_file(file.name, content);
+    }
+  }
+}
+
+// Nodes that show one mesh 4^12 times: more triangles than memory.
+TEST(HostileModels, BombsOfMemoryEndAtTheLimit) {
+#if defined(GRIDIRON_TEST_SANITIZED)
+  GTEST_SKIP() << "not under sanitizers";
+#endif
+  std::string gltf = gltf_text(small()), nodes = "{\"children\":[1,2,3,4]}";
+  constexpr int kLevels = 12;
+  for (int level = 1; level <= kLevels; ++level) {
+    for (int i = 0; i < 4; ++i) {
+      const int first = 4 * level + 1;
+      nodes += level == kLevels ? ",{\"mesh\":0}"
+                                : ",{\"children\":[" + std::to_string(first) + "," + std::to_string(first + 1) + "," +
+                                      std::to_string(first + 2) + "," + std::to_string(first + 3) + "]}";
+    }
+  }
+  gltf = replaced(gltf, "\"nodes\":[{\"mesh\":0}]", "\"nodes\":[" + nodes + "]");
+  const std::string error = error_of_file("bomb.gltf", gltf);
+  EXPECT_NE(error.find("--import-"), std::string::npos) << error;
+}
+
+TEST(HostileModels, LimitsOfTimeHold) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  text += repeated("f 1 2 3\n", 1500000);
+  const TemporaryFolder folder("slow.obj", text);
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string error = error_of(folder, "slow.obj", {.memory_bytes = std::uint64_t{4} << 30, .most_seconds = 1});
+  EXPECT_NE(error.find("takes more than 1 s; --import-time allows more"), std::string::npos) << error;
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
+}  // namespace
+}  // namespace gridiron::test
