@@ -24,9 +24,10 @@ struct ImageBudgets {
   [[gnu::used, gnu::noinline]] static void define() {
     asm volatile(GRIDIRON_SYMBOL("gridiron_code_budget_bytes", "0") GRIDIRON_SYMBOL("gridiron_stack_budget_bytes", "1")
                      GRIDIRON_SYMBOL("gridiron_store_bytes", "2") GRIDIRON_SYMBOL("gridiron_arena_bytes", "3")
+                         GRIDIRON_SYMBOL("gridiron_code_memory_bytes", "4")
                  :
                  : "i"(Layout::kCodeBudgetBytes), "i"(Layout::kStackBudgetBytes), "i"(sizeof(LocalStore<Layout>)),
-                   "i"(Layout::kArenaBytes));
+                   "i"(Layout::kArenaBytes), "i"(kCodeMemoryBytes<Layout>));
   }
 };
 

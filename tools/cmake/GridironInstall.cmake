@@ -46,12 +46,14 @@ function(gridiron_install_package)
   # Before 1.0 a minor version may break what the last one offered: core/README.md, "Versions".
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/gridiron-config-version.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/gridiron-config.cmake ${PROJECT_BINARY_DIR}/gridiron-config-version.cmake
+    ${GRIDIRON_PACKAGE_FILES}/gridiron-c.cmake
     DESTINATION ${GRIDIRON_CMAKE_DIR} COMPONENT platform)
   # The porting kit: a project to copy, with its files from other folders.
   set(port_dir ${CMAKE_INSTALL_DATADIR}/gridiron/port)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/platform/template/ DESTINATION ${port_dir} COMPONENT platform)
   set(consumer ${PROJECT_SOURCE_DIR}/tests/package/consumer)
   install(FILES ${PROJECT_SOURCE_DIR}/tests/contract/contract_checks.h ${PROJECT_SOURCE_DIR}/platform/firmware/memory.cpp
+    ${PROJECT_SOURCE_DIR}/platform/c/gridiron_c.cpp ${consumer}/c_picture.c
     ${consumer}/copy_port.h ${consumer}/port_picture.cpp ${consumer}/port_contract.cpp ${consumer}/hills.h
     ${consumer}/picture.h
     DESTINATION ${port_dir} COMPONENT platform)

@@ -159,6 +159,28 @@ struct TreeLayout64K {
   /// @endcond
 };
 
+/// The same of a microcontroller that has a memory for code, 32 KB, and one of 16 KB for stack and store: the smallest
+/// tiles, and four nodes or leaves at hand. The budgets are those of a Cortex-M7 (platform/mps2/README.md).
+struct TreeLayout16K {
+  /// @cond
+  using Engine = TileEngine;
+  static constexpr std::uint32_t kEffects = 0;
+  static constexpr std::uint32_t kArenaBytes = 16 * 1024;
+  static constexpr std::uint32_t kCodeMemoryBytes = 32 * 1024;
+  static constexpr std::uint32_t kCodeBudgetBytes = 28 * 1024;
+  static constexpr std::uint32_t kStackBudgetBytes = 5 * 1024;
+  static constexpr std::uint32_t kTileWidth = 8;
+  static constexpr std::uint32_t kPacketWidth = 0;
+  static constexpr std::uint32_t kMaxOutputDepth = 2;
+  static constexpr std::uint32_t kEyeTileWidth = 8;
+  static constexpr std::uint32_t kEyeTurns = 1;
+  static constexpr std::uint32_t kEyeSlots = 4;
+  static constexpr std::uint32_t kEyeTopNodes = 0;
+  static constexpr std::uint32_t kLeafTriangles = 8;
+  static constexpr std::uint32_t kMostLanes = 4;
+  /// @endcond
+};
+
 /// Sizes of a 256 KB core that renders effects.
 /// @tparam BuiltV        EffectBits: what it is built for, kSceneShading among them.
 /// @tparam PacketWidthV  0: eye rays go through the tree.
@@ -285,14 +307,26 @@ struct alignas(128) LocalStore {
   static_assert(Layout::kMaxOutputDepth <= kOutputTagCount);
 };
 
+/// Bytes of a memory of its own for code, which a layout may state as kCodeMemoryBytes; its arena then holds stack and
+/// data alone. 0: code, stack and data share the arena.
+template <class Layout>
+inline constexpr std::uint32_t kCodeMemoryBytes = 0;
+/// @cond
+template <class Layout>
+requires(Layout::kCodeMemoryBytes !=
+         0) inline constexpr std::uint32_t kCodeMemoryBytes<Layout> = Layout::kCodeMemoryBytes;
+/// @endcond
+
 /// Bytes that a layout leaves for data.
 template <class Layout>
-inline constexpr std::uint32_t kDataRoomBytes =
-    Layout::kArenaBytes - Layout::kCodeBudgetBytes - Layout::kStackBudgetBytes;
+inline constexpr std::uint32_t kDataRoomBytes = Layout::kArenaBytes - Layout::kStackBudgetBytes -
+                                                (kCodeMemoryBytes<Layout> != 0 ? 0 : Layout::kCodeBudgetBytes);
 
-/// Whether the store fits the layout's budget. The build fails if one of the layouts below does not.
+/// Whether store, stack and code fit the layout's memories. The build fails if one of the layouts below does not.
 template <class Layout>
-inline constexpr bool kFitsArena = sizeof(LocalStore<Layout>) <= kDataRoomBytes<Layout>;
+inline constexpr bool kFitsArena = sizeof(LocalStore<Layout>) <= kDataRoomBytes<Layout> &&
+                                   (kCodeMemoryBytes<Layout> == 0 ||
+                                    Layout::kCodeBudgetBytes <= kCodeMemoryBytes<Layout>);
 
 static_assert(kFitsArena<StoreLayout256K<4>> && kFitsArena<StoreLayout256K<8>> && kFitsArena<StoreLayout256K<16>> &&
               kFitsArena<StoreLayout256K<32>>);
@@ -302,7 +336,8 @@ static_assert(kFitsArena<StoreLayout64K<4>> && kFitsArena<StoreLayout64K<8>> && 
 static_assert(kFitsArena<StoreLayout128K<8>> && kFitsArena<StoreLayout128K<32>>);
 static_assert(kFitsArena<EffectLayout256K<kAllEffects, 0>> && kFitsArena<EffectLayout256K<kAllEffects, 8>> &&
               kFitsArena<EffectLayout256K<kAllEffects, 32>> && kFitsArena<EffectLayout64K<kAllEffects>>);
-static_assert(kFitsArena<TreeLayout64K> && kFitsArena<TreeLayout256K<32>> && kFitsArena<TreeLayout256K<64>>);
+static_assert(kFitsArena<TreeLayout16K> && kFitsArena<TreeLayout64K> && kFitsArena<TreeLayout256K<32>> &&
+              kFitsArena<TreeLayout256K<64>>);
 static_assert(kFitsArena<StoreLayout512K<8>> && kFitsArena<StoreLayout512K<32>> && kFitsArena<StoreLayout512K<8, 64>> &&
               kFitsArena<StoreLayout512K<32, 64>>);
 
