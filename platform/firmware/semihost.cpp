@@ -42,7 +42,9 @@ Word call(Operation operation, const void* arguments) {
   return answer;
 }
 
-Word address_of(const void* place) { return reinterpret_cast<std::uintptr_t>(place); }
+Word address_of(const void* place) {
+  return reinterpret_cast<std::uintptr_t>(place);
+}
 
 Word length_of(const char* text) {
   Word length = 0;
