@@ -25,7 +25,8 @@ std::uint64_t check_value_of(const FrameJob& job) {
   head.check_value = 0;
   CheckValue check;
   check.add({reinterpret_cast<const std::byte*>(&head), sizeof head});
-  check.add({reinterpret_cast<const std::byte*>(&job) + sizeof head, job.loaded_bytes - sizeof head});
+  check.add({reinterpret_cast<const std::byte*>(&job) + sizeof head,
+             static_cast<std::size_t>(job.loaded_bytes - sizeof head)});
   return check.value();
 }
 

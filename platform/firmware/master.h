@@ -69,7 +69,8 @@ class Master {
     const RunExit ran = run_cores(frame_address, job_.tile_count);
     if (ran != RunExit::kDone) return ran;
     const Status status = write_result();
-    if (!write_host_file(result_name, reinterpret_cast<const void*>(job_.result_address), job_.result_bytes)) {
+    if (!write_host_file(result_name, reinterpret_cast<const void*>(static_cast<std::uintptr_t>(job_.result_address)),
+                         job_.result_bytes)) {
       print("the host did not take ", result_name, "\n");
       return RunExit::kNotWritten;
     }

@@ -1,4 +1,4 @@
-// Semihosting on RISC-V and AArch64.
+// Semihosting on RISC-V, AArch64 and Cortex-M. A block of arguments consists of words of the target.
 // Memory: caller's, and a command line on the stack. Threads: one core at a time. SPDX-License-Identifier: Apache-2.0
 #include "semihost.h"
 
@@ -6,7 +6,9 @@ namespace gridiron::port {
 
 namespace {
 
-enum Operation : std::uint64_t {
+using Word = std::uintptr_t;
+
+enum Operation : Word {
   kOpen = 0x01,
   kClose = 0x02,
   kWrite = 0x05,
@@ -15,9 +17,9 @@ enum Operation : std::uint64_t {
 };
 
 // Takes an operation and the address of its arguments; returns the first register.
-std::uint64_t call(Operation operation, const void* arguments) {
+Word call(Operation operation, const void* arguments) {
 #if defined(__riscv)
-  register std::uint64_t answer asm("a0") = operation;
+  register Word answer asm("a0") = operation;
   register const void* block asm("a1") = arguments;
   // The call is these three instructions, uncompressed and on one page.
   asm volatile(
@@ -27,19 +29,25 @@ std::uint64_t call(Operation operation, const void* arguments) {
       : "r"(block)
       : "memory");
 #elif defined(__aarch64__)
-  register std::uint64_t answer asm("x0") = operation;
+  register Word answer asm("x0") = operation;
   register const void* block asm("x1") = arguments;
   asm volatile("hlt #0xf000" : "+r"(answer) : "r"(block) : "memory");
+#elif defined(__arm__) && defined(__thumb__)
+  register Word answer asm("r0") = operation;
+  register const void* block asm("r1") = arguments;
+  asm volatile("bkpt #0xab" : "+r"(answer) : "r"(block) : "memory");
 #else
 #error "no semihosting is known for this target"
 #endif
   return answer;
 }
 
-std::uint64_t address_of(const void* place) { return reinterpret_cast<std::uintptr_t>(place); }
+Word address_of(const void* place) {
+  return reinterpret_cast<std::uintptr_t>(place);
+}
 
-std::uint64_t length_of(const char* text) {
-  std::uint64_t length = 0;
+Word length_of(const char* text) {
+  Word length = 0;
   while (text[length] != '\0') ++length;
   return length;
 }
@@ -54,27 +62,27 @@ bool begins_with(const char* text, const char* start) {
 }  // namespace
 
 void exit_run(std::uint32_t code) {
-  constexpr std::uint64_t kApplicationExit = 0x20026;
-  const std::uint64_t arguments[] = {kApplicationExit, code};
+  constexpr Word kApplicationExit = 0x20026;
+  const Word arguments[] = {kApplicationExit, code};
   call(kExit, arguments);
   // The emulator does not respond, so stop here.
   for (;;) asm volatile("" ::: "memory");
 }
 
 bool write_host_file(const char* name, const void* bytes, std::uint64_t count) {
-  constexpr std::uint64_t kWriteBinary = 5, kFailed = ~std::uint64_t{0};
-  const std::uint64_t open[] = {address_of(name), kWriteBinary, length_of(name)};
-  const std::uint64_t file = call(kOpen, open);
+  constexpr Word kWriteBinary = 5, kFailed = ~Word{0};
+  const Word open[] = {address_of(name), kWriteBinary, length_of(name)};
+  const Word file = call(kOpen, open);
   if (file == kFailed) return false;
-  const std::uint64_t write[] = {file, address_of(bytes), count};
-  const std::uint64_t rest = call(kWrite, write);
-  const std::uint64_t close[] = {file};
+  const Word write[] = {file, address_of(bytes), static_cast<Word>(count)};
+  const Word rest = call(kWrite, write);
+  const Word close[] = {file};
   return call(kClose, close) == 0 && rest == 0;
 }
 
 std::uint64_t number_option(const char* name, std::uint64_t otherwise) {
   char line[201] = {};
-  const std::uint64_t arguments[] = {address_of(line), sizeof line - 1};
+  const Word arguments[] = {address_of(line), sizeof line - 1};
   if (call(kCommandLine, arguments) != 0) return otherwise;
   line[sizeof line - 1] = '\0';
   for (const char* word = line; *word != '\0'; ++word) {

@@ -32,7 +32,8 @@ class Board {
 };
 
 constexpr const char* kBoards[][2] = {
-    {"sifive_u", "qemu-system-riscv64"}, {"zcu102", "qemu-system-aarch64"}, {"virt", "qemu-system-riscv64"}};
+    {"sifive_u", "qemu-system-riscv64"}, {"zcu102", "qemu-system-aarch64"}, {"virt", "qemu-system-riscv64"},
+    {"mps2", "qemu-system-arm"}};
 
 void expect_refused(const ScriptResult& result, const std::string& words) {
   EXPECT_EQ(result.exit_code, 125) << result.output;

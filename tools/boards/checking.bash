@@ -19,7 +19,8 @@ hold_stack() {
     }
     END { print painted + 0, budget + 0 }' "$log")
   mapfile -t graphs < <(find "$build" -name '*.ci' \( -path '*gridiron_kernel.dir*' \
-    -o -path '*gridiron_prepare.dir*' -o -path '*gridiron_firmware*.dir*' -o -path "*/gridiron_${board}_$image.dir/*" \))
+    -o -path '*gridiron_prepare.dir*' -o -path '*gridiron_firmware*.dir*' -o -path "*/gridiron_${board}_$image.dir/*" \
+    -o -path "*/gridiron_${board}_kernel_$image.dir/*" -o -path "*/gridiron_${board}_port_$image.dir/*" \))
   bound=$("$checks/deepest_stack" --from "$entry" "$@" "${graphs[@]}") || bound=''
   if [ "$painted" -gt 0 ] && [ "$painted" -le "${bound:-0}" ] && [ "$bound" -le "$budget" ]; then
     echo "ok  stack, $image: $painted bytes painted, at most $bound by the call graph, $budget in the budget"

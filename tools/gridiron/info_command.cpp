@@ -38,7 +38,7 @@ Json json_of(const StoreFacts& store) {
 
 // Whether the requested store has a renderer of effects.
 bool has_effect_store(const InfoPlan& plan) {
-  return plan.store != sim::StoreSize::k128KB;
+  return plan.store != sim::StoreSize::k128KB && plan.store != sim::StoreSize::k16KB;
 }
 
 Json json_of(const LoopBounds& bounds) {
@@ -367,9 +367,13 @@ void print_text(const InfoPlan& plan, const SceneFacts& facts) {
                      words_of_bytes(plan.scene.machine->main_memory_bytes) + " of " +
                      std::string(plan.scene.machine->name));
   print_line("configuration", std::string(plan.scene.configuration->name));
-  print_line("local store", words_of_bytes(store.arena_bytes) + ": " + words_of_bytes(store.code_bytes) + " code, " +
-                                words_of_bytes(store.stack_bytes) + " stack, " + words_of_bytes(store.data_bytes()) +
-                                " data");
+  const std::string code_words = words_of_bytes(store.code_bytes) + " code";
+  const std::string data_words =
+      words_of_bytes(store.stack_bytes) + " stack, " + words_of_bytes(store.data_bytes()) + " data";
+  print_line("local store", words_of_bytes(store.arena_bytes) + ": " +
+                                (store.code_memory_bytes == 0 ? code_words + ", " + data_words
+                                                              : data_words + "; " + code_words + " in a memory of " +
+                                                                    words_of_bytes(store.code_memory_bytes)));
   const std::uint32_t called_for = facts.effects.record.called_for;
   if (called_for != 0 && called_for != kAllEffects) {
     print_line("", "of a renderer with all effects; one with the effects called for takes less");

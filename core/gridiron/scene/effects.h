@@ -60,7 +60,8 @@ struct EffectsView {
 
 /// Checks every range and count against the mesh, also for materials that are not in use. Lights and all corners of
 /// area lights lie within kCoordinateLimit, edges of area lights are not parallel, exactly the triangles with smooth
-/// materials have normals, and exactly those of materials with colours have colours. count_scene_image checks what depends on the grid.
+/// materials have normals, and exactly those of materials with colours have colours. count_scene_image checks what
+/// depends on the grid.
 /// Errors: kBadEffects, kBadIndex (of a normal, a colour or a material). Cost: linear.
 [[nodiscard]] Status check_effects(const MeshView& mesh, const EffectsView& effects);
 

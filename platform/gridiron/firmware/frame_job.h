@@ -45,7 +45,7 @@ struct FrameJob {
   std::uint32_t effects;         ///< EffectBits that the scene calls for, 0: no scene shading
   std::uint32_t packet_width;    ///< rays along a packet's edge that the buffers were chosen for, 0: none; work depends
                                  ///< on it, the picture does not
-  std::uint32_t store_bytes;     ///< the arena that they were chosen for: 64, 128, 256 or 512 KB
+  std::uint32_t store_bytes;     ///< the arena that they were chosen for: 16, 64, 128, 256 or 512 KB
   std::uint64_t check_value;     ///< of the loaded bytes with this field taken as 0 (core/gridiron/base/check_value.h)
   std::uint32_t reserved[24];    ///< 0
 };

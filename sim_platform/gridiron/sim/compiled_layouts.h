@@ -16,10 +16,10 @@ struct LayoutList {};
 /// In every mode and for every lane count from 4 on, up to most_lanes().
 using CommonLayouts =
     LayoutList<StoreLayout64K<4>, StoreLayout64K<8>, StoreLayout64K<16>, StoreLayout256K<4>, StoreLayout256K<8>,
-               StoreLayout256K<16>, StoreLayout256K<32>, TreeLayout64K, TreeLayout256K<64>>;
+               StoreLayout256K<16>, StoreLayout256K<32>, TreeLayout16K, TreeLayout64K, TreeLayout256K<64>>;
 
 /// Of these, with one lane too, in Mode::kChecked and Mode::kPlain: what cores without vectors run.
-using OneLaneLayouts = LayoutList<TreeLayout64K, TreeLayout256K<64>>;
+using OneLaneLayouts = LayoutList<TreeLayout16K, TreeLayout64K, TreeLayout256K<64>>;
 
 /// Eye rays through the tree in 128 KB: one tile at a time, and fewer nodes and leaves at hand. Budgets for code and
 /// stack are those of 256 KB.

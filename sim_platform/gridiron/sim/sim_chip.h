@@ -26,21 +26,26 @@ enum class Completion : std::uint8_t {
 
 /// The size of the cores' local stores.
 enum class StoreSize : std::uint8_t {
+  k16KB,   ///< 16,384 bytes of data; code has a memory of its own. Eye rays through the tree alone
   k64KB,   ///< 65,536 bytes
   k128KB,  ///< 131,072 bytes
   k256KB,  ///< 262,144 bytes
   k512KB,  ///< 524,288 bytes
 };
-/// All of them, the smallest first.
+/// Those of the experiments, which hold a grid too, the smallest first.
 inline constexpr StoreSize kStoreSizes[] = {StoreSize::k64KB, StoreSize::k128KB, StoreSize::k256KB, StoreSize::k512KB};
+/// All of them, the smallest first.
+inline constexpr StoreSize kEveryStoreSize[] = {StoreSize::k16KB, StoreSize::k64KB, StoreSize::k128KB,
+                                                StoreSize::k256KB, StoreSize::k512KB};
 
 /// @returns bytes of a local store.
 [[nodiscard]] constexpr std::uint32_t arena_bytes(StoreSize store) {
-  return (64u << 10) << static_cast<std::uint32_t>(store);
+  if (store == StoreSize::k16KB) return 16u << 10;
+  return (64u << 10) << (static_cast<std::uint32_t>(store) - static_cast<std::uint32_t>(StoreSize::k64KB));
 }
 /// Pixels along a tile's edge by default.
 [[nodiscard]] constexpr std::uint32_t usual_tile_width(StoreSize store) {
-  return store == StoreSize::k64KB ? 16 : 32;
+  return store == StoreSize::k16KB ? 8 : store == StoreSize::k64KB ? 16 : 32;
 }
 
 /// The layout that a build of the kernel is for.

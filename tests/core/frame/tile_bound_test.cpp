@@ -339,8 +339,8 @@ TEST(TileBound, RaysByKindAreReachedOnALitFloor) {
   ASSERT_TRUE(trace.has_value());
   const TileCounts tile = counts_of(trace->tiles[0]);
   for (const Work kind : {Work::kWaveRay, Work::kQueuedRay, Work::kSurfacePoint, Work::kShadowRay, Work::kLightSample,
-                          Work::kOcclusionRay, Work::kColorAdded, Work::kColorGroup, Work::kSmoothNormal, Work::kVertexColor,
-                          Work::kSrgbLevel, Work::kListRay}) {
+                          Work::kOcclusionRay, Work::kColorAdded, Work::kColorGroup, Work::kSmoothNormal,
+                          Work::kVertexColor, Work::kSrgbLevel, Work::kListRay}) {
     EXPECT_EQ(tile[kind], bound[kind]) << "kind " << static_cast<int>(kind);
   }
 }

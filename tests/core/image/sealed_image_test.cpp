@@ -46,7 +46,8 @@ std::string field_of_element(const SectionEntry& entry, TriangleFormat format, s
       }
       return field_in({{"triangle.projection", 40}, {"triangle.reserved", 44}, {"triangle.triangle_id", 48}}, offset);
     case SectionKind::kEffects:
-      return field_in({{"effects", 56}, {"effects.offset", 96}, {"effects.levels", 100}, {"effects.reserved", 128}}, offset);
+      return field_in({{"effects", 56}, {"effects.offset", 96}, {"effects.levels", 100}, {"effects.reserved", 128}},
+                      offset);
     case SectionKind::kMaterials:
       return field_in({{"material", 44}, {"material.has_colors", 48}}, offset);
     case SectionKind::kLights:
@@ -213,8 +214,8 @@ TEST(SealedImage, OfATreeAloneOnlyWhatAnotherMeshMayHaveIsFree) {
 
     built = image_with_effects(format, 2, false);
     ASSERT_FALSE(HasFailure());
-    EXPECT_EQ(free_fields(built), (Names{"effects", "effects.levels", "environment.texels", "header.vertex_count", "light",
-                                         "material", "material.has_colors", "normal.colors", "normal.n", "surface.v",
+    EXPECT_EQ(free_fields(built), (Names{"effects", "effects.levels", "environment.texels", "header.vertex_count",
+                                         "light", "material", "material.has_colors", "normal.colors", "normal.n", "surface.v",
                                          "tree.leaf_triangles"}));
   }
 }

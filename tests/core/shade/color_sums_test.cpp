@@ -121,7 +121,8 @@ TEST(Srgb, IsTheCurveOfTheStandard) {
   float last = 0.0f;
   for (std::uint32_t step = 0; step <= 1u << 20; ++step) {
     const float linear = static_cast<float>(step) * 0x1p-20f;
-    const double exact = linear <= 0.0031308f ? 12.92 * double{linear} : 1.055 * std::pow(double{linear}, 1 / 2.4) - 0.055;
+    const double exact =
+        linear <= 0.0031308f ? 12.92 * double{linear} : 1.055 * std::pow(double{linear}, 1 / 2.4) - 0.055;
     const float found = srgb_of(linear);
     ASSERT_NEAR(found, exact, 0x1p-20) << linear;
     ASSERT_GE(found, last - 0x1p-22f) << linear;

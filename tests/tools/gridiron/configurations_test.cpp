@@ -78,7 +78,7 @@ TEST(Configurations, UnknownNamesAreNone) {
 
 TEST(StoreFacts, RegionsFillTheStoreInOrderWithinTheArena) {
   const std::vector<sim::LayoutChoice> layouts = tool::built_layouts();
-  EXPECT_EQ(layouts.size(), 27u);
+  EXPECT_EQ(layouts.size(), 28u);
   for (const sim::LayoutChoice& layout : layouts) {
     const std::optional<tool::StoreFacts> store = tool::find_store_facts(layout);
     ASSERT_TRUE(store.has_value());
@@ -90,7 +90,10 @@ TEST(StoreFacts, RegionsFillTheStoreInOrderWithinTheArena) {
       end_bytes = region.offset_bytes + region.bytes;
     }
     EXPECT_EQ(store->data_bytes(), end_bytes);
-    EXPECT_LE(store->data_bytes() + store->code_bytes + store->stack_bytes, store->arena_bytes);
+    const bool has_code_memory = store->code_memory_bytes != 0;
+    EXPECT_EQ(has_code_memory, layout.store == sim::StoreSize::k16KB);
+    EXPECT_LE(store->data_bytes() + store->stack_bytes + (has_code_memory ? 0 : store->code_bytes), store->arena_bytes);
+    EXPECT_LE(has_code_memory ? store->code_bytes : 0, store->code_memory_bytes);
     EXPECT_EQ(store->arena_bytes, sim::arena_bytes(layout.store));
     EXPECT_EQ(store->tile_width, layout.tile_width);
     EXPECT_EQ(store->packet_width, layout.packet_width);
@@ -110,7 +113,7 @@ TEST(StoreFacts, EveryStoreHasTheConfigurationsPackets) {
     }
   }
   EXPECT_FALSE(tool::find_store_facts({sim::StoreSize::k128KB, 64, 8}).has_value());
-  for (const sim::StoreSize size : sim::kStoreSizes) {
+  for (const sim::StoreSize size : sim::kEveryStoreSize) {
     const tool::StoreFacts store = tool::usual_store_facts(size, 0);
     EXPECT_EQ(store.engine, EngineId::kTree);
     EXPECT_EQ(store.arena_bytes, sim::arena_bytes(size));

@@ -163,8 +163,8 @@ TEST(MachineFile, NamesTheLineOfEveryDefect) {
       {base + "core_count 1025\n", ":2: 'core_count' must be from 1 to 1024, not '1025'"},
       {base + "core_count 99999999999999999999999\n", ":2: 'core_count' must be from 1 to 1024"},
       {base + "clock_hz 1e999\n", ":2: 'clock_hz' must be from 1 to 1e12, not '1e999'"},
-      {base + "local_store_bytes 32768\n", ":2: 'local_store_bytes' must be from 65536 to 1073741824, not '32768'"},
-      {base + "main_memory_bytes 1\n", ":2: 'main_memory_bytes' must be from 1048576 to 1099511627776, not '1'"},
+      {base + "local_store_bytes 8192\n", ":2: 'local_store_bytes' must be from 16384 to 1073741824, not '8192'"},
+      {base + "main_memory_bytes 1\n", ":2: 'main_memory_bytes' must be from 65536 to 1099511627776, not '1'"},
       {base + "latency_cycles -1\n", ":2: 'latency_cycles' must be from 0 to 1048576, not '-1'"},
       {base + "latency_cycles 400 500\n", ":2: 'latency_cycles' takes one number, or several with shares"},
       {base + "latency_cycles 400:0.5 500\n", ":2: 'latency_cycles' takes one number, or several with shares"},
@@ -218,7 +218,7 @@ TEST(MachineFile, NamesOfBuiltInMachinesComeFirst) {
   EXPECT_EQ(tool::find_machine(path)->core_count, 3u);
   EXPECT_EQ(failure_of([] { return tool::find_machine("abacus"); }),
             "abacus: no such file, and no built-in machine of that name; there are cell-ps3, cell-2006, "
-            "cell-ps3-2gb, cell-ps3-dram, cell-ps3-tlb, fu540");
+            "cell-ps3-2gb, cell-ps3-dram, cell-ps3-tlb, fu540, cortex-m7");
 }
 
 TEST(MachineFile, TheStoreFollowsTheMachine) {
@@ -228,6 +228,8 @@ TEST(MachineFile, TheStoreFollowsTheMachine) {
   EXPECT_EQ(tool::largest_store(machine), sim::StoreSize::k128KB);
   machine.local_store_bytes = (128u << 10) - 1;
   EXPECT_EQ(tool::largest_store(machine), sim::StoreSize::k64KB);
+  machine.local_store_bytes = (64u << 10) - 1;
+  EXPECT_EQ(tool::largest_store(machine), sim::StoreSize::k16KB);
   machine.local_store_bytes = 1u << 30;
   EXPECT_EQ(tool::largest_store(machine), sim::StoreSize::k512KB);
 }

@@ -228,7 +228,7 @@ TEST(Machines, HelpShowsTheFormat) {
   EXPECT_NE(help.find("based_on       cell-ps3"), std::string::npos) << help;
   EXPECT_NE(help.find("line_bytes: 1 to 16384; a transfer costs whole lines of this size\n"), std::string::npos)
       << help;
-  EXPECT_NE(run(folder, {"render", "--help"}).out.find("cell-ps3-2gb|cell-ps3-dram|cell-ps3-tlb|fu540|FILE"),
+  EXPECT_NE(run(folder, {"render", "--help"}).out.find("cell-ps3-2gb|cell-ps3-dram|cell-ps3-tlb|fu540|cortex-m7|FILE"),
             std::string::npos);
 }
 

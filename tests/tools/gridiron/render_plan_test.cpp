@@ -138,7 +138,9 @@ TEST(RenderPlan, AConfigurationGetsTheBuffersThatTheStoreHas) {
 TEST(RenderPlan, RefusesByWhatIsKnownOfTheScene) {
   tool::RenderRequest request = render_request("grid");
   request.shading = Shading::kScene;
-  EXPECT_EQ(refusal(request), "--shading scene: a mesh has no lights and materials; --look studio gives it some, text scenes (NFF) have their own");
+  EXPECT_EQ(refusal(request), 
+                              "--shading scene: a mesh has no lights and materials; --look studio gives it some, "
+                              "text scenes (NFF) have their own");
   EXPECT_NO_THROW((void)plan_of(request, kPacked)) << "nobody knows before it is read";
   EXPECT_NE(refusal(request, {.kind = SceneKind::kPacked, .is_read = true}).find("scene has no lights"),
             std::string::npos);

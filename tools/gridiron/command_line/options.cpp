@@ -102,8 +102,11 @@ void add_threads(CLI::App& app, std::optional<std::uint32_t>& threads, const std
 void add_store(CLI::App& app, std::optional<StoreSize>& store) {
   add_choice(
       app, "--store", store,
-      Choices<StoreSize>{
-          {"64", StoreSize::k64KB}, {"128", StoreSize::k128KB}, {"256", StoreSize::k256KB}, {"512", StoreSize::k512KB}},
+      Choices<StoreSize>{{"16", StoreSize::k16KB},
+                         {"64", StoreSize::k64KB},
+                         {"128", StoreSize::k128KB},
+                         {"256", StoreSize::k256KB},
+                         {"512", StoreSize::k512KB}},
       "local store in KB (default: the largest that fits the machine)");
 }
 

@@ -79,7 +79,7 @@ StoreSize choose_store(const sim::MachineProfile& machine, std::optional<StoreSi
   }
   StoreSize chosen = asked.value_or(largest_store(machine));
   if (asked || is_built(chosen)) return chosen;
-  for (const StoreSize store : sim::kStoreSizes) {
+  for (const StoreSize store : sim::kEveryStoreSize) {
     if (has_room(store) && is_built(store)) chosen = store;
   }
   return chosen;

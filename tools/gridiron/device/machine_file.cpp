@@ -307,8 +307,8 @@ Machine find_machine(const std::string& name_or_file) {
 }
 
 sim::StoreSize largest_store(const MachineProfile& machine) {
-  sim::StoreSize largest = sim::StoreSize::k64KB;  // what a machine has at least
-  for (const sim::StoreSize store : sim::kStoreSizes) {
+  sim::StoreSize largest = sim::StoreSize::k16KB;  // what a machine has at least
+  for (const sim::StoreSize store : sim::kEveryStoreSize) {
     if (sim::arena_bytes(store) <= machine.local_store_bytes) largest = store;
   }
   return largest;

@@ -36,8 +36,8 @@ struct Row {
 constexpr Row kRows[] = {
     {"core_count", &MachineProfile::core_count, {1, 1024}, "cores that render; --cores replaces it"},
     {"clock_hz", &MachineProfile::clock_hz, kHertz, "their clock"},
-    {"main_memory_bytes", &MachineProfile::main_memory_bytes, {0x1p20, 0x1p40}, "shared by all cores"},
-    {"local_store_bytes", &MachineProfile::local_store_bytes, {0x1p16, 0x1p30}, "of each core"},
+    {"main_memory_bytes", &MachineProfile::main_memory_bytes, {0x1p16, 0x1p40}, "shared by all cores"},
+    {"local_store_bytes", &MachineProfile::local_store_bytes, {0x1p14, 0x1p30}, "of each core"},
     {"line_bytes", &MachineProfile::line_bytes, {1, 16384}, "a transfer costs whole lines of this size"},
     {"queue_depth", &MachineProfile::queue_depth, {1, 4096}, "commands a core may have pending"},
     {"lines_in_flight", &MachineProfile::lines_in_flight, {1, 4096}, "lines a core may have under way"},

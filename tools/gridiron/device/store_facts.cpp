@@ -14,6 +14,7 @@ StoreFacts facts_of() {
   StoreFacts facts;
   facts.arena_bytes = Layout::kArenaBytes;
   facts.code_bytes = Layout::kCodeBudgetBytes;
+  facts.code_memory_bytes = kCodeMemoryBytes<Layout>;
   facts.stack_bytes = Layout::kStackBudgetBytes;
   facts.tile_width = Layout::kTileWidth;
   facts.packet_width = Layout::kPacketWidth;
@@ -54,7 +55,7 @@ void add_fit(std::vector<LayoutFit>& fits, sim::StoreSize store) {
 
 template <class... Layouts>
 void add_choices(std::vector<sim::LayoutChoice>& choices, sim::LayoutList<Layouts...>) {
-  for (const sim::StoreSize store : sim::kStoreSizes) {
+  for (const sim::StoreSize store : sim::kEveryStoreSize) {
     const auto add_if = [&choices, store](std::uint32_t arena_bytes, std::uint32_t tile_width,
                                           std::uint32_t packet_width, bool has_effects) {
       if (arena_bytes == sim::arena_bytes(store)) choices.push_back({store, tile_width, packet_width, has_effects});
@@ -107,6 +108,7 @@ StoreFacts effect_store_facts(sim::StoreSize store, std::uint32_t packet_width) 
 
 StoreFacts usual_store_facts(sim::StoreSize store, std::uint32_t packet_width) {
   if (packet_width == 0) return *find_store_facts({store, tree_tile_width(store), 0});
+  if (store == sim::StoreSize::k16KB) store = sim::StoreSize::k64KB;  // holds no grid
   const std::uint32_t tile_width = sim::usual_tile_width(store);
   return *find_store_facts({store, tile_width, std::min(packet_width, tile_width)});
 }

@@ -17,6 +17,7 @@ namespace gridiron::tool {
 struct StoreFacts {
   std::uint32_t arena_bytes = 0;
   std::uint32_t code_bytes = 0, stack_bytes = 0;  ///< committed budgets
+  std::uint32_t code_memory_bytes = 0;  ///< of a memory of its own for code, outside of the arena; 0: there is none
   std::uint32_t tile_width = 0, packet_width = 0;
   EngineId engine = EngineId::kGrid;  ///< of eye rays
   std::uint32_t max_macro_width = 0;
@@ -39,11 +40,12 @@ struct StoreFacts {
 
 /// Pixels along the edge of a tile whose eye rays go through the tree.
 [[nodiscard]] constexpr std::uint32_t tree_tile_width(sim::StoreSize store) {
+  if (store == sim::StoreSize::k16KB) return 8;
   return store == sim::StoreSize::k64KB ? 16 : store == sim::StoreSize::k128KB ? 32 : 64;
 }
 
-/// The layout with the store's usual tiles. @param packet_width  8 or 32; 32 becomes 16 if tiles are no wider. 0: the
-/// one whose eye rays go through the tree.
+/// The layout with the store's usual tiles. @param packet_width  8 or 32; 32 becomes 16 if tiles are no wider; in a
+/// store of 16 KB, which holds no grid, that of 64 KB. 0: the one whose eye rays go through the tree.
 [[nodiscard]] StoreFacts usual_store_facts(sim::StoreSize store, std::uint32_t packet_width);
 
 /// The layout that renders effects. @param store  64 KB, else that of 256 KB is returned. @param packet_width  0, 8 or

@@ -30,7 +30,7 @@ float largest_of(const TreeRecord& tree) {
 
 bool has_bounds(const FrameHead& frame, float largest, const RenderPlan& plan) {
   const EyeProjection eye = project_eye(frame, largest);
-  return plan.layout.store == sim::StoreSize::k64KB ? eye.is_trusted : eye.has_bounds;
+  return plan.layout.store <= sim::StoreSize::k64KB ? eye.is_trusted : eye.has_bounds;
 }
 
 }  // namespace

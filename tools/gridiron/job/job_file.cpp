@@ -128,7 +128,7 @@ void check_head(const ByteReader& reader, const FrameJob& job) {
   reader.require(job.memory_bytes <= std::numeric_limits<std::uint64_t>::max() - job.base_address,
                  offsetof(FrameJob, memory_bytes), "memory_bytes is out of range");
   reader.require(find_store(job.store_bytes).has_value(), offsetof(FrameJob, store_bytes),
-                 "store_bytes is not 64, 128, 256 or 512 KB");
+                 "store_bytes is not 16, 64, 128, 256 or 512 KB");
 }
 
 // Everything but the check value.
@@ -212,7 +212,7 @@ OpenJob read_job_file(const std::filesystem::path& path) {
 }
 
 std::optional<sim::StoreSize> find_store(std::uint32_t store_bytes) {
-  for (const sim::StoreSize store : sim::kStoreSizes) {
+  for (const sim::StoreSize store : sim::kEveryStoreSize) {
     if (sim::arena_bytes(store) == store_bytes) return store;
   }
   return std::nullopt;

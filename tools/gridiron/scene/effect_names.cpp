@@ -67,6 +67,7 @@ std::string words_of_missing_effects(std::uint32_t bits) {
 
 std::string renderer_type(std::uint32_t called_for, std::uint32_t store_kilobytes, std::uint32_t packet_width) {
   if ((called_for & kAllEffects) == 0) {
+    if (packet_width == 0 && store_kilobytes == 16) return "TreeLayout16K";
     if (packet_width == 0) return store_kilobytes == 64 ? "TreeLayout64K" : "TreeLayout256K<>";
     return "StoreLayout" + std::to_string(store_kilobytes) + "K<" + std::to_string(packet_width) + ">";
   }
