@@ -248,12 +248,10 @@ void MeshJoiner::add_triangle(const aiMesh& mesh, const std::array<unsigned, 3>&
 
 Mesh MeshJoiner::take() {
   MeshSurface& surface = result_.surface;
+  // The file has none: those who use the surface know better than Assimp what to take.
   if (!has_own_material_) {
-    // A mesh with normals has a material that says so, if nothing else of it is known.
-    if (!has_normals_ && !has_colors_) {
-      surface.materials.clear();
-      surface.triangle_materials.clear();
-    }
+    surface.materials.clear();
+    surface.triangle_materials = {};
   }
   if (!has_normals_) surface.triangle_normals = {};
   if (!has_colors_) surface.triangle_colors = {};

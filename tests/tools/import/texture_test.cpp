@@ -3,6 +3,10 @@
 
 #include "model_files.h"
 
+#ifdef GRIDIRON_HAS_JPEG
+#include <jpeglib.h>
+#endif
+
 namespace gridiron::test {
 namespace {
 
@@ -55,6 +59,48 @@ TEST(Texture, RowsRunDownwards) {
   EXPECT_EQ(tall.sample(0.5f, 0.75f, Wrap::kClamp, Wrap::kClamp, 0).x, 1.0f);
   EXPECT_EQ(tall.sample(0.5f, 0.25f, Wrap::kClamp, Wrap::kClamp, 0).x, 0.0f);
 }
+
+#ifdef GRIDIRON_HAS_JPEG
+// A picture of one colour as a JPEG file.
+std::string jpeg_bytes(std::uint32_t width, std::uint32_t height, std::array<std::uint8_t, 3> color) {
+  jpeg_compress_struct jpeg{};
+  jpeg_error_mgr errors{};
+  jpeg.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&jpeg);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&jpeg, &bytes, &size);
+  jpeg.image_width = width;
+  jpeg.image_height = height;
+  jpeg.input_components = 3;
+  jpeg.in_color_space = JCS_RGB;
+  jpeg_set_defaults(&jpeg);
+  jpeg_start_compress(&jpeg, TRUE);
+  std::vector<std::uint8_t> row;
+  for (std::uint32_t i = 0; i < width; ++i) row.insert(row.end(), color.begin(), color.end());
+  JSAMPROW rows[] = {row.data()};
+  while (jpeg.next_scanline < height) (void)jpeg_write_scanlines(&jpeg, rows, 1);
+  jpeg_finish_compress(&jpeg);
+  jpeg_destroy_compress(&jpeg);
+  std::string file(reinterpret_cast<const char*>(bytes), size);
+  std::free(bytes);
+  return file;
+}
+
+TEST(Texture, JpegFilesAreDecoded) {
+  const std::string file = jpeg_bytes(19, 7, {200, 100, 50});
+  const auto decode = [](std::string_view bytes) { return Texture::decode(std::as_bytes(std::span(bytes))); };
+  const std::optional<Texture> texture = decode(file);
+  ASSERT_TRUE(texture.has_value());
+  EXPECT_EQ(texture->width(), 19u);
+  EXPECT_EQ(texture->height(), 7u);
+  const Vec3 color = texture->sample(0.5f, 0.5f, Wrap::kRepeat, Wrap::kRepeat, 0);
+  EXPECT_NEAR(color.x, tool::linear_of_srgb(200.0f / 255.0f), 0.02f);
+  EXPECT_NEAR(color.y, tool::linear_of_srgb(100.0f / 255.0f), 0.02f);
+  EXPECT_NEAR(color.z, tool::linear_of_srgb(50.0f / 255.0f), 0.02f);
+  for (std::size_t size = 0; size < 100; ++size) (void)decode(file.substr(0, size));
+}
+#endif
 
 TEST(Texture, DamagedPicturesAreNone) {
   const std::string png = png_bytes(2, 2, std::vector<std::array<std::uint8_t, 3>>(4, {10, 20, 30}));

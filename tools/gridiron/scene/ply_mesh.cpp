@@ -24,7 +24,7 @@ namespace {
   throw Failure(ExitCode::kBadInput, message);
 }
 
-// Normals as directions. A triangle with a corner without one has none, and a material of its own that says so.
+// Normals as directions. A triangle with a corner without one has none.
 void keep_normals(Mesh& mesh) {
   std::vector<bool> is_normal(mesh.surface.normals.size());
   for (std::size_t i = 0; i < is_normal.size(); ++i) {
@@ -36,15 +36,11 @@ void keep_normals(Mesh& mesh) {
                  ? Vec3(static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length))
                  : Vec3(0, 0, 1);
   }
-  mesh.surface.materials = {{.smooth_normals = true}};
   mesh.surface.triangle_normals = mesh.triangles;
-  mesh.surface.triangle_materials.assign(mesh.triangles.size(), 0);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const UVec3& corners = mesh.triangles[i];
     if (is_normal[corners.x] && is_normal[corners.y] && is_normal[corners.z]) continue;
-    if (mesh.surface.materials.size() == 1) mesh.surface.materials.push_back({});
     mesh.surface.triangle_normals[i] = UVec3(kNoNormal);
-    mesh.surface.triangle_materials[i] = 1;
   }
 }
 

@@ -161,7 +161,8 @@ void tell_model(const SceneInput& input) {
   const Mesh& mesh = std::get<Mesh>(input.content);
   std::string words = report.format + ", " + words_of_count(report.meshes) + (report.meshes == 1 ? " mesh" : " meshes");
   if (!mesh.surface.materials.empty()) words += ", " + words_of_count(mesh.surface.materials.size(), "material");
-  words += ", " + words_of_count(mesh.triangles.size(), "triangle");
+  // A look has added a ground to the model's own triangles.
+  if (!input.effects) words += ", " + words_of_count(mesh.triangles.size(), "triangle");
   if (!mesh.surface.triangle_normals.empty()) words += ", normals";
   if (!mesh.surface.triangle_colors.empty()) words += ", colours";
   if (!report.frame.empty()) words += "; " + report.frame;
