@@ -1,5 +1,6 @@
 # What `cmake --install` installs, and what find_package and pkg-config find there. A component is a library with a
-# public name: platform, core, sim_platform; each is an install component too. The libraries are static.
+# public name: platform, core, sim_platform; each is an install component too, as are tools and documents. The libraries
+# are static.
 # SPDX-License-Identifier: Apache-2.0
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -62,6 +63,23 @@ function(gridiron_install_package)
   set(toolchains ${PROJECT_SOURCE_DIR}/tools/cmake/toolchains)
   install(FILES ${toolchains}/cortex_m7.cmake DESTINATION ${port_dir}/toolchains COMPONENT platform)
   install(DIRECTORY ${toolchains}/glm DESTINATION ${port_dir}/toolchains COMPONENT platform)
-  install(FILES ${PROJECT_SOURCE_DIR}/platform/README.md DESTINATION ${port_dir} RENAME PORTING.md COMPONENT platform)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT platform)
+
+  # Pages, and the porting guide beside the kit, without links to what is not installed.
+  set(copy_documents ${PROJECT_SOURCE_DIR}/tools/cmake/copy_documents)
+  set(documents ${PROJECT_BINARY_DIR}/documents)
+  file(REMOVE_RECURSE ${documents})
+  execute_process(COMMAND ${copy_documents} ${documents}/pages COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${copy_documents} --kit ${documents}/kit COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${copy_documents} --list OUTPUT_VARIABLE names COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL "[^\n]+" names "${names}")
+  list(TRANSFORM names PREPEND ${PROJECT_SOURCE_DIR}/)
+  set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${copy_documents} ${names})
+  install(FILES ${documents}/kit/PORTING.md DESTINATION ${port_dir} COMPONENT platform)
+  install(DIRECTORY ${documents}/pages/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documents)
+
+  if(PROJECT_IS_TOP_LEVEL)
+    add_custom_target(uninstall COMMAND ${CMAKE_COMMAND} -D BUILD=${PROJECT_BINARY_DIR}
+      -P ${PROJECT_SOURCE_DIR}/tools/cmake/uninstall.cmake COMMENT "Removing what was installed last" VERBATIM)
+  endif()
 endfunction()

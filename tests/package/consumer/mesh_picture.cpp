@@ -17,8 +17,8 @@
 #include "hills.h"
 #include "picture.h"
 
-#if GRIDIRON_VERSION < 100
-#error "gridiron 0.1 or later is needed"
+#if GRIDIRON_VERSION < 200
+#error "gridiron 0.2 or later is needed"
 #endif
 
 using namespace gridiron;

@@ -4,18 +4,17 @@
 #include <gridiron/version.h>
 
 #include <cstdlib>
-#include <map>
 #include <memory>
 #include <span>
 #include <string_view>
 
 #include "base/failure.h"
 #include "base/words.h"
+#include "command_table.h"
 #include "command_words.h"
 #include "files/input_file.h"
 #include "gridiron/device/accuracies.h"
 #include "gridiron/device/machine_keys.h"
-#include "options.h"
 
 namespace gridiron::tool {
 namespace {
@@ -68,9 +67,8 @@ Finish add_info(CLI::App& app) {
   add_packet(app, info.layout.packet_width);
   add_accuracy(app, info.accuracy);
   app.add_flag("--depth", info.has_depth, "distances too");
-  add_parsed(
-      app, "--camera", info.camera, [](const std::string& text) { return std::optional(input_path(text)); },
-      "a file name", "FILE", "with best: what tiles take at most with this camera; - is standard input");
+  add_input_option(app, "--camera", info.camera, {"camera"},
+                   "with best: what tiles take at most with this camera; - is standard input");
   add_choice(app, "--shading", info.shading, Choices<Shading>{{"none", Shading::kNone}, {"simple", Shading::kSimple}},
              "of these tiles (default simple)");
   app.add_flag("--json", info.json, "as JSON");
@@ -86,7 +84,7 @@ Finish add_pack(CLI::App& app) {
   PackRequest& pack = asked->request;
   add_input(app, pack.scene);
   add_grid_options(app, pack.scene, asked->machine);
-  add_output(app, "-o,--output", pack.output, "scene image; - is standard output")->required();
+  add_output(app, "-o,--output", pack.output, {"gri"}, "scene image; - is standard output")->required();
   add_choice(app, "--format", pack.format, kFormats, format_help());
   add_quiet(app, pack.scene.quiet);
   return [asked] {
@@ -98,23 +96,23 @@ Finish add_pack(CLI::App& app) {
 Finish add_result(CLI::App& app) {
   const auto asked = std::make_shared<Asked<ResultRequest>>();
   ResultRequest& result = asked->request;
-  add_input_file(app, "JOB", result.job, "the device's input, made by job; - is standard input");
-  add_input_file(app, "RESULT", result.result,
+  add_input_file(app, "JOB", result.job, {"job"}, "the device's input, made by job; - is standard input");
+  add_input_file(app, "RESULT", result.result, {"result"},
                  "the device's output: the bytes from result_address on; - is standard input");
-  add_output(app, "-o,--output", result.outputs.picture,
+  add_output(app, "-o,--output", result.outputs.picture, kPictureEndings,
              "picture, .png or .pfm; - is standard output, here and for every output");
-  add_output(app, "--depth", result.outputs.depth,
+  add_output(app, "--depth", result.outputs.depth, {"pfm"},
              "distance of every pixel, .pfm, +inf where nothing is hit; of a job with distances");
-  add_output(app, "--ids", result.outputs.ids,
+  add_output(app, "--ids", result.outputs.ids, {"pfm"},
              "triangle of every pixel, .pfm, -1 where nothing is hit; of a job with ids");
-  add_output(app, "--report", result.outputs.report, "hashes, work and tiles of each core, JSON");
+  add_output(app, "--report", result.outputs.report, {"json"}, "hashes, work and tiles of each core, JSON");
   app.add_flag("--compare", result.compare,
                "render the job on the simulated chip and compare planes, work and transfers; exit code 3 where they "
                "differ; all outputs are written even then");
-  app.add_option("--predict", asked->machine,
-                 "with --compare: compare what each tile takes on this machine with the instructions that the device "
-                 "counted")
-      ->type_name("MACHINE");
+  offer_machines(*app.add_option("--predict", asked->machine,
+                                 "with --compare: compare what each tile takes on this machine with the instructions "
+                                 "that the device counted")
+                      ->type_name("MACHINE"));
   add_threads(app, result.threads, "of --compare; no result depends on it");
   add_quiet(app, result.quiet);
   return [asked] {
@@ -130,8 +128,9 @@ Finish add_result(CLI::App& app) {
 
 Finish add_machines(CLI::App& app) {
   const auto asked = std::make_shared<Asked<MachinesRequest>>();
-  app.add_option("MACHINE", asked->machine, "built-in name or machine file: printed in full, to be copied and edited")
-      ->type_name("");
+  offer_machines(*app.add_option("MACHINE", asked->machine,
+                                 "built-in name or machine file: printed in full, to be copied and edited")
+                      ->type_name(""));
   app.footer(machine_format_help());
   app.add_flag("--json", asked->request.json, "as JSON");
   add_quiet(app, asked->request.quiet);
@@ -155,14 +154,12 @@ Finish add_experiment(CLI::App& app) {
              "building anew for each frame costs, by the general core and by the cores; some minutes. All leave CSV, "
              "SVG and index.html; without a terminal nothing is printed before the end")
       ->required();
-  add_parsed(app, "-o,--output", experiment.output, parse_path, "the name of a folder", "DIR",
-             "folder, made where it is not there")
-      ->required();
-  add_parsed(
+  add_output_folder(app, experiment.output, "folder, made where it is not there");
+  offer_folders(*add_parsed(
       app, "--scenes", experiment.scenes, [](const std::string& text) { return std::optional(text); }, "a folder",
       "DIR",
       "folder of the scans (default: the environment's GRIDIRON_SCENES); scans that are not there are left "
-      "out, and without any a teapot and a torus knot are made; effects makes its own scenes");
+      "out, and without any a teapot and a torus knot are made; effects makes its own scenes"));
   add_threads(app, experiment.threads, "no file but host_*.csv, which measures this host, depends on it");
   add_size(app, experiment.size,
            "pictures in pixels (default 1024x1024; dynamic: 512x512; effects: 96x96, at least 16x16)");
@@ -210,20 +207,25 @@ constexpr NamedCommand kCommands[] = {
 
 }  // namespace
 
-Command parse_arguments(int count, const char* const* values) {
-  CLI::App app("ray traces on a simulated chip whose cores have a small local store and move data by DMA.", "gridiron");
+CommandTable::CommandTable()
+    : app("ray traces on a simulated chip whose cores have a small local store and move data by DMA.", "gridiron") {
   app.set_version_flag("--version", std::string("gridiron ") + kVersion);
   app.require_subcommand(1);
-  std::map<const CLI::App*, Finish> finishes;
+  Offer commands;
   for (const NamedCommand& command : kCommands) {
     CLI::App& options = *app.add_subcommand(command.name, command.help);
     finishes[&options] = command.add(options);
+    commands.words.emplace_back(command.name);
   }
-  std::string topic;
-  CLI::App* help = app.add_subcommand("help", "explains a command");
-  help->add_option("COMMAND", topic, "the command (default: what commands there are)")->type_name("");
+  help = app.add_subcommand("help", "explains a command");
+  CLI::Option* option = help->add_option("COMMAND", topic, "the command (default: what commands there are)");
+  set_offer(*option->type_name(""), commands);
   app.footer("gridiron help COMMAND explains every option of a command.");  // not theirs
+}
 
+Command parse_arguments(int count, const char* const* values) {
+  CommandTable table;
+  CLI::App& app = table.app;
   if (count <= 1) return TextRequest{overview(app)};
   require_command(app, values[1]);
   try {
@@ -236,8 +238,8 @@ Command parse_arguments(int count, const char* const* values) {
   } catch (const CLI::ParseError& error) {
     explain_mistake(app, std::span(values, static_cast<std::size_t>(count)).subspan(1), error.what());
   }
-  if (*help) return TextRequest{help_of(app, topic.empty() ? app : command_of(app, topic))};
-  return finishes.at(app.get_subcommands().front())();
+  if (*table.help) return TextRequest{help_of(app, table.topic.empty() ? app : command_of(app, table.topic))};
+  return table.finishes.at(app.get_subcommands().front())();
 }
 
 }  // namespace gridiron::tool

@@ -28,9 +28,11 @@ void add_look_options(CLI::App& app, LookRequest& look) {
       app, "--look", look.is_studio, Choices<bool>{{"studio", true}},
       "put a mesh on a ground, with a key light, a large light, ambient occlusion, smooth normals and 4 samples a "
       "pixel; each part can be set by itself, with this option or without it");
-  add_parsed(app, "--color", look.color, parse_color, color, "COLOR", "of the mesh, in place of its own");
-  add_parsed(app, "--background", look.background, parse_color, color, "COLOR",
-             "where no ray hits anything (default: the colour of the lit ground)");
+  CLI::Option* own =
+      add_parsed(app, "--color", look.color, parse_color, color, "COLOR", "of the mesh, in place of its own");
+  CLI::Option* behind = add_parsed(app, "--background", look.background, parse_color, color, "COLOR",
+                                   "where no ray hits anything (default: the colour of the lit ground)");
+  for (CLI::Option* option : {own, behind}) set_offer(*option, {.words = colors, .endings = {}});
   add_choice(app, "--ground", look.ground, Choices<bool>{{"on", true}, {"off", false}}, "a ground below the mesh");
   add_parsed(app, "--light", look.lights, parse_lights, "none, or a list of head, key and area with commas", "LIST",
              "head: a light at the eye (default without --look); key: from the left; area: a large one from the right",

@@ -22,11 +22,23 @@ std::optional<std::filesystem::path> parse_path(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional<std::filesystem::path>(text);
 }
 
-void add_input_file(CLI::App& app, const std::string& name, std::filesystem::path& target, const std::string& help) {
+void add_output_folder(CLI::App& app, std::filesystem::path& target, const std::string& help) {
+  CLI::Option* option = add_parsed(app, "-o,--output", target, parse_path, "the name of a folder", "DIR", help);
+  offer_folders(*option->required());
+}
+
+void add_input_option(CLI::App& app, const std::string& name, std::optional<std::filesystem::path>& target,
+                      const Endings& endings, const std::string& help) {
+  const auto parse = [](const std::string& text) { return std::optional(input_path(text)); };
+  offer_files(*add_parsed(app, name, target, parse, "a file name", "FILE", help), endings);
+}
+
+void add_input_file(CLI::App& app, const std::string& name, std::filesystem::path& target, const Endings& endings,
+                    const std::string& help) {
   const auto parse = [](const std::string& text) {
     return text.empty() ? std::nullopt : std::optional(input_path(text));
   };
-  add_parsed(app, name, target, parse, "a file name", "", help)->required();
+  offer_files(*add_parsed(app, name, target, parse, "a file name", "", help)->required(), endings);
 }
 
 void add_quiet(CLI::App& app, bool& quiet) {
@@ -39,7 +51,7 @@ void add_size(CLI::App& app, std::optional<CountPair>& size, const std::string& 
 }
 
 void add_input(CLI::App& app, SceneRequest& scene) {
-  add_input_file(app, "INPUT", scene.input,
+  add_input_file(app, "INPUT", scene.input, kSceneEndings,
                  "scene: a mesh (PLY, OBJ, STL, glTF and others), a text scene (NFF) or a packed scene; - is standard "
                  "input");
   add_tolerance(app, scene);
@@ -76,10 +88,10 @@ void add_grid_options(CLI::App& app, SceneRequest& scene, std::string& machine) 
   std::string built_in;
   for (const sim::MachineProfile& profile : sim::machine_profiles()) built_in += std::string(profile.name) + "|";
   const auto any_name = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
-  add_parsed(
+  offer_machines(*add_parsed(
       app, "--machine", machine, any_name, "a machine's name or file", built_in + "FILE",
       "machine profile, built in or a text file as 'gridiron machines NAME' prints, - for standard input (default " +
-          machine + ")");
+          machine + ")"));
   add_choice(
       app, "--configuration", scene.configuration, sets,
       "named set of parameters (default best; reference with --accuracy paper; grid where best cannot render, as "

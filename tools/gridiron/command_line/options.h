@@ -14,6 +14,7 @@
 
 #include "arguments.h"
 #include "base/suggestion.h"
+#include "offer.h"
 
 namespace gridiron::tool {
 
@@ -28,7 +29,7 @@ struct Asked {
 };
 
 /// Adds an option whose text one of our own parsers converts; `expected` completes the error message, which suggests
-/// similar words from `words`.
+/// similar words from `words`, which shells offer too.
 template <class Target, class Parser>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target, Parser parser,
                         const std::string& expected, const std::string& type, const std::string& help,
@@ -38,7 +39,9 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target, 
     if (!value) throw CLI::ValidationError(name, "'" + text + "' is not " + expected + did_you_mean(text, words));
     target = *value;
   };
-  return app.add_option_function<std::string>(name, set, help)->type_name(type)->expected(1);
+  CLI::Option* option = app.add_option_function<std::string>(name, set, help)->type_name(type)->expected(1);
+  if (!words.empty()) set_offer(*option, {.words = words, .endings = {}});
+  return option;
 }
 
 /// Words and their values, in the order of the help.
@@ -76,14 +79,30 @@ void add_count(CLI::App& app, const std::string& name, Target& target, std::uint
 
 [[nodiscard]] std::optional<std::filesystem::path> parse_path(const std::string& text);
 
+/// Endings of files that shells offer first, without the dot.
+using Endings = std::vector<std::string>;
+inline const Endings kPictureEndings = {"png", "pfm"};
+inline const Endings kSceneEndings = {"ply", "nff", "gri", "obj", "stl", "gltf", "glb"};
+
 /// Adds an option that takes the name of an output.
 template <class Target>
-CLI::Option* add_output(CLI::App& app, const std::string& name, Target& target, const std::string& help) {
-  return add_parsed(app, name, target, parse_path, "a file name", "FILE", help);
+CLI::Option* add_output(CLI::App& app, const std::string& name, Target& target, const Endings& endings,
+                        const std::string& help) {
+  CLI::Option* option = add_parsed(app, name, target, parse_path, "a file name", "FILE", help);
+  offer_files(*option, endings);
+  return option;
 }
 
+/// Adds the required option -o for a folder.
+void add_output_folder(CLI::App& app, std::filesystem::path& target, const std::string& help);
+
 /// Adds an argument that names an input: `-` is standard input.
-void add_input_file(CLI::App& app, const std::string& name, std::filesystem::path& target, const std::string& help);
+void add_input_file(CLI::App& app, const std::string& name, std::filesystem::path& target, const Endings& endings,
+                    const std::string& help);
+
+/// Adds an option that names an input: `-` is standard input.
+void add_input_option(CLI::App& app, const std::string& name, std::optional<std::filesystem::path>& target,
+                      const Endings& endings, const std::string& help);
 
 /// Every command has it, so that scripts can pass it to any of them.
 void add_quiet(CLI::App& app, bool& quiet);

@@ -25,10 +25,8 @@ std::optional<std::uint64_t> parse_seed(const std::string& text) {
 
 void add_view_options(CLI::App& app, RenderRequest& render) {
   const std::string vector = "x,y,z with three finite numbers";
-  add_parsed(
-      app, "--camera", render.camera, [](const std::string& text) { return std::optional(input_path(text)); },
-      "a file name", "FILE",
-      "view from a file of its own; --eye, --at, --up and --fov replace parts of it; - is standard input");
+  add_input_option(app, "--camera", render.camera, {"camera"},
+                   "view from a file of its own; --eye, --at, --up and --fov replace parts of it; - is standard input");
   add_parsed(app, "--eye", render.view.eye, parse_vector, vector, "x,y,z",
              "position of the camera (default: a text scene's own, else the scene is framed)");
   add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z",
@@ -51,15 +49,15 @@ void add_view_options(CLI::App& app, RenderRequest& render) {
 
 void add_output_options(CLI::App& app, RenderRequest& render) {
   FrameOutputs& outputs = render.outputs;
-  add_output(app, "-o,--output", outputs.picture,
+  add_output(app, "-o,--output", outputs.picture, kPictureEndings,
              "picture, .png or .pfm (default: INPUT's name with .png, in the current folder); - is standard output, "
              "here and for every output");
-  add_output(app, "--depth", outputs.depth, "distance of every pixel, .pfm, +inf where nothing is hit");
-  add_output(app, "--ids", outputs.ids, "triangle of every pixel, .pfm, -1 where nothing is hit");
-  add_output(app, "--report", outputs.report,
+  add_output(app, "--depth", outputs.depth, {"pfm"}, "distance of every pixel, .pfm, +inf where nothing is hit");
+  add_output(app, "--ids", outputs.ids, {"pfm"}, "triangle of every pixel, .pfm, -1 where nothing is hit");
+  add_output(app, "--report", outputs.report, {"json"},
              "where cycles and bytes went, JSON; without cycles where none are counted (--mode plain, --lanes other "
              "than 4, --tile)");
-  add_output(app, "--timeline", outputs.timeline,
+  add_output(app, "--timeline", outputs.timeline, {"json"},
              "what each core did when, Chrome trace format; not with --mode plain");
   app.add_flag(
       "--bound", render.has_bound,
@@ -188,17 +186,17 @@ Finish add_animate(CLI::App& app) {
   const auto asked = std::make_shared<Asked<AnimateRequest>>();
   AnimateRequest& animate = asked->request;
   RenderRequest& render = animate.render;
-  app.add_option("FRAMES", animate.inputs,
-                 "meshes or text scenes in the order of their frames; of a folder all .ply files, or all .nff "
-                 "files, by name; one mesh, text scene or packed scene with --path or --turntable; - is standard input")
-      ->required()
-      ->type_name("");
-  add_parsed(app, "-o,--output", animate.output, parse_path, "the name of a folder", "DIR",
-             "folder of the pictures and animation.csv, made where it is not there")
-      ->required();
-  add_parsed(
-      app, "--path", animate.path, [](const std::string& text) { return std::optional(input_path(text)); },
-      "a file name", "FILE",
+  CLI::Option* frames =
+      app.add_option(
+             "FRAMES", animate.inputs,
+             "meshes or text scenes in the order of their frames; of a folder all .ply files, or all .nff "
+             "files, by name; one mesh, text scene or packed scene with --path or --turntable; - is standard input")
+          ->required()
+          ->type_name("");
+  set_offer(*frames, {.words = {}, .endings = kSceneEndings, .has_files = true, .has_folders = true});
+  add_output_folder(app, animate.output, "folder of the pictures and animation.csv, made where it is not there");
+  add_input_option(
+      app, "--path", animate.path, {"path"},
       "the camera moves smoothly through the key views of this file; --eye, --at, --up and --fov replace parts of all "
       "views; - is standard input");
   add_count(app, "--turntable", animate.turntable, 1, kMostFrames,
@@ -206,7 +204,8 @@ Finish add_animate(CLI::App& app) {
   add_count(app, "--animation", animate.animation, 1, kMostFrames,
             "the first animation of the one model (glTF and others) in so many frames, the first and the last moment "
             "among them");
-  add_output(app, "--film", animate.film, "film of all pictures, .mp4, .webm or .gif; needs ffmpeg");
+  add_output(app, "--film", animate.film, {"mp4", "webm", "gif"},
+             "film of all pictures, .mp4, .webm or .gif; needs ffmpeg");
   const auto rate = [](const std::string& text) {
     const std::optional<float> value = parse_float(text);
     return value && *value >= 0.01f && *value <= 1000.0f ? value : std::nullopt;
@@ -220,7 +219,7 @@ Finish add_animate(CLI::App& app) {
   app.add_flag("--keep-vertex-order", animate.keeps_vertex_order,
                "the cores read vertices in the order of the file; by default in that of three which takes the fewest "
                "lines of memory: the file's, that of first use, one along a curve through space");
-  add_output(app, "--timeline", animate.timeline,
+  add_output(app, "--timeline", animate.timeline, {"json"},
              "what each core did when for the first frame: the passes of its build, and the picture; Chrome trace "
              "format; not with --resume");
   app.add_flag("--resume", animate.resume,
@@ -248,7 +247,7 @@ Finish add_job(CLI::App& app) {
   JobRequest& job = asked->request;
   RenderRequest& render = job.render;
   add_input(app, render.scene);
-  add_output(app, "-o,--output", job.output, "the job; - is standard output")->required();
+  add_output(app, "-o,--output", job.output, {"job"}, "the job; - is standard output")->required();
   const auto base = [](const std::string& text) {
     const std::optional<std::uint64_t> address = parse_address(text);
     return address && *address % 4096 == 0 ? address : std::nullopt;

@@ -1,0 +1,37 @@
+# Removes the files that the last `cmake --install` of each component, or of all of them, has written, and folders of Gridiron
+# that are empty then. The manifests in the build tree name them. Files that are gone already are no error.
+#   cmake -D BUILD=DIR -P tools/cmake/uninstall.cmake      DIR: the build tree; DESTDIR of the environment, as for the install
+# SPDX-License-Identifier: Apache-2.0
+file(GLOB manifests ${BUILD}/install_manifest*.txt)
+if(NOT manifests)
+  message(FATAL_ERROR "${BUILD}/install_manifest.txt: not there: nothing was installed from this build")
+endif()
+set(count 0)
+set(folders "")
+foreach(manifest ${manifests})
+  file(STRINGS ${manifest} files)
+  foreach(file ${files})
+    set(path "$ENV{DESTDIR}${file}")
+    if(EXISTS "${path}" OR IS_SYMLINK "${path}")
+      file(REMOVE "${path}")
+      math(EXPR count "${count} + 1")
+    endif()
+    # Folders below one that is named after Gridiron are its own; bin, lib and man1 are not.
+    get_filename_component(folder "${path}" DIRECTORY)
+    while("${folder}/" MATCHES "/gridiron/")
+      list(APPEND folders "${folder}")
+      get_filename_component(folder "${folder}" DIRECTORY)
+    endwhile()
+  endforeach()
+  file(REMOVE "${manifest}")
+endforeach()
+list(REMOVE_DUPLICATES folders)
+list(SORT folders ORDER DESCENDING)  # a folder comes before the one that it lies in
+foreach(folder ${folders})
+  file(GLOB left "${folder}/*" "${folder}/.*")
+  list(REMOVE_ITEM left "${folder}/." "${folder}/..")
+  if(NOT left AND IS_DIRECTORY "${folder}")
+    file(REMOVE_RECURSE "${folder}")
+  endif()
+endforeach()
+message(STATUS "${count} files removed")
