@@ -20,14 +20,14 @@ struct LookLights {
 /// The parts of a look; those that are not given are the studio's, or else left out.
 struct LookRequest {
   bool is_studio = false;
-  std::optional<Vec3> background;  ///< linear
-  std::optional<Vec3> color;       ///< of the mesh, in place of its own; linear
-  std::optional<bool> ground;
-  std::optional<LookLights> lights;
-  std::optional<std::uint32_t> samples;    ///< of a pixel: 1, 4, 16
-  std::optional<std::uint32_t> occlusion;  ///< rays a point: 0..kMostEffectSamples
-  std::optional<float> smooth_degrees;     ///< edges that bend less are smooth; 0..180
-  std::optional<ColorLevels> levels;
+  std::optional<Vec3> background{};  ///< linear
+  std::optional<Vec3> color{};       ///< of the mesh, in place of its own; linear
+  std::optional<bool> ground{};
+  std::optional<LookLights> lights{};
+  std::optional<std::uint32_t> samples{};    ///< of a pixel: 1, 4, 16
+  std::optional<std::uint32_t> occlusion{};  ///< rays a point: 0..kMostEffectSamples
+  std::optional<float> smooth_degrees{};     ///< edges that bend less are smooth; 0..180
+  std::optional<ColorLevels> levels{};
 
   /// Whether a mesh gets effects.
   [[nodiscard]] bool is_given() const {
