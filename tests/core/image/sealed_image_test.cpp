@@ -215,8 +215,8 @@ TEST(SealedImage, OfATreeAloneOnlyWhatAnotherMeshMayHaveIsFree) {
     built = image_with_effects(format, 2, false);
     ASSERT_FALSE(HasFailure());
     EXPECT_EQ(free_fields(built), (Names{"effects", "effects.levels", "environment.texels", "header.vertex_count",
-                                         "light", "material", "material.has_colors", "normal.colors", "normal.n", "surface.v",
-                                         "tree.leaf_triangles"}));
+                                         "light", "material", "material.has_colors", "normal.colors", "normal.n",
+                                         "surface.v", "tree.leaf_triangles"}));
   }
 }
 
