@@ -33,7 +33,7 @@ inline constexpr float kAmbientLight = 0.5f;               ///< what ambient occ
 inline constexpr float kMaxLightColor = 1e6f;              ///< of each channel
 
 /// How brightness 0..1 becomes the levels 0..255 of a pixel.
-enum class ColorLevels : std::uint32_t {
+enum class ColorLevels : unsigned {
   kLinear = 0,  ///< in proportion
   kSrgb = 1,    ///< by the curve of IEC 61966-2-1, as screens expect it
 };

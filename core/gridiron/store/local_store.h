@@ -313,14 +313,17 @@ template <class Layout>
 inline constexpr std::uint32_t kCodeMemoryBytes = 0;
 /// @cond
 template <class Layout>
-requires(Layout::kCodeMemoryBytes !=
-         0) inline constexpr std::uint32_t kCodeMemoryBytes<Layout> = Layout::kCodeMemoryBytes;
+requires requires {
+  Layout::kCodeMemoryBytes;
+}
+inline constexpr std::uint32_t kCodeMemoryBytes<Layout> = Layout::kCodeMemoryBytes;
 /// @endcond
 
 /// Bytes that a layout leaves for data.
 template <class Layout>
 inline constexpr std::uint32_t kDataRoomBytes = Layout::kArenaBytes - Layout::kStackBudgetBytes -
-                                                (kCodeMemoryBytes<Layout> != 0 ? 0 : Layout::kCodeBudgetBytes);
+                                                (kCodeMemoryBytes<Layout> != 0 ? std::uint32_t{0}
+                                                                               : Layout::kCodeBudgetBytes);
 
 /// Whether store, stack and code fit the layout's memories. The build fails if one of the layouts below does not.
 template <class Layout>
