@@ -142,23 +142,25 @@ class EffectRenderer {
   void finish_tile(std::uint32_t* color) {
     transfers_.note_stage(Stage::kOutput);
     static constexpr std::uint32_t kPixels = Store::kTilePixels;
+    const float steps = kSumSteps * static_cast<float>(static_cast<std::int32_t>(samples_per_pixel()));
+    const float per_step = 1.0f / steps;
+    if (scene().levels == static_cast<std::uint32_t>(ColorLevels::kSrgb)) {
+      store_.work.add(Work::kSrgbLevel, 3 * kPixels);
+      store_.work.charge_to(Work::kSrgbLevel);
+      for (auto& sums : store_.effects.sums) {
+        for (std::uint32_t& sum : sums) {
+          const float value = srgb_of(brightness_of(sum, per_step));
+          sum = static_cast<std::uint32_t>(static_cast<std::int32_t>(value * steps + 0.5f));
+        }
+      }
+    }
     store_.work.add(Work::kColorGroup, kPixels / 4);
     store_.work.charge_to(Work::kColorGroup);
-    const bool is_srgb = scene().levels == static_cast<std::uint32_t>(ColorLevels::kSrgb);
-    if (is_srgb) store_.work.add(Work::kSrgbLevel, 3 * kPixels);
-    const float per_step = 1.0f / (kSumSteps * static_cast<float>(static_cast<std::int32_t>(samples_per_pixel())));
     for (std::uint32_t i = 0; i < kPixels; ++i) {
-      std::uint32_t pixel = 0xFF000000u;
-      for (std::uint32_t channel = 0; channel < 3; ++channel) {
-        float value = brightness_of(store_.effects.sums[channel][i], per_step);
-        if (is_srgb) {
-          store_.work.charge_to(Work::kSrgbLevel);
-          value = srgb_of(value);
-          store_.work.charge_to(Work::kColorGroup);
-        }
-        pixel |= level_of(value) << (8 * channel);
-      }
-      color[i] = pixel;
+      const std::uint32_t red = level_of(brightness_of(store_.effects.sums[0][i], per_step));
+      const std::uint32_t green = level_of(brightness_of(store_.effects.sums[1][i], per_step));
+      const std::uint32_t blue = level_of(brightness_of(store_.effects.sums[2][i], per_step));
+      color[i] = red | green << 8 | blue << 16 | 0xFF000000u;
     }
     transfers_.note_stage(Stage::kPrimary);
   }

@@ -230,8 +230,8 @@ struct EffectLayout64K {
   using Engine = GridEngine;
   static constexpr std::uint32_t kEffects = BuiltV;
   static constexpr std::uint32_t kArenaBytes = 64 * 1024;
-  static constexpr std::uint32_t kCodeBudgetBytes = 40 * 1024 + 192;
-  static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024 + 64;
+  static constexpr std::uint32_t kCodeBudgetBytes = 40 * 1024 + 288;
+  static constexpr std::uint32_t kStackBudgetBytes = 4 * 1024 - 32;
   static constexpr std::uint32_t kTileWidth = 8;
   static constexpr std::uint32_t kPacketWidth = 0;
   static constexpr std::uint32_t kMaxOutputDepth = 2;
