@@ -144,16 +144,7 @@ class EffectRenderer {
     static constexpr std::uint32_t kPixels = Store::kTilePixels;
     const float steps = kSumSteps * static_cast<float>(static_cast<std::int32_t>(samples_per_pixel()));
     const float per_step = 1.0f / steps;
-    if (scene().levels == static_cast<std::uint32_t>(ColorLevels::kSrgb)) {
-      store_.work.add(Work::kSrgbLevel, 3 * kPixels);
-      store_.work.charge_to(Work::kSrgbLevel);
-      for (auto& sums : store_.effects.sums) {
-        for (std::uint32_t& sum : sums) {
-          const float value = srgb_of(brightness_of(sum, per_step));
-          sum = static_cast<std::uint32_t>(static_cast<std::int32_t>(value * steps + 0.5f));
-        }
-      }
-    }
+    if (scene().levels == static_cast<std::uint32_t>(ColorLevels::kSrgb)) put_on_curve(steps);
     store_.work.add(Work::kColorGroup, kPixels / 4);
     store_.work.charge_to(Work::kColorGroup);
     for (std::uint32_t i = 0; i < kPixels; ++i) {
@@ -405,9 +396,24 @@ class EffectRenderer {
   void tint(WavePoint& point, const PackedColor* colors, float w1, float w2) {
     store_.work.add(Work::kVertexColor);
     store_.work.charge_to(Work::kVertexColor);
-    const Vector3 color = (1.0f - w1 - w2) * unpacked_color(colors[0]) +
-                          (w1 * unpacked_color(colors[1]) + w2 * unpacked_color(colors[2]));
-    store(vector_of(point.lit.diffuse) * color, point.lit.diffuse);
+    const float w0 = 1.0f - w1 - w2;
+    for (std::uint32_t channel = 0; channel < 3; ++channel) {
+      const float factor = w0 * unpacked_channel(colors[0], channel) +
+                           (w1 * unpacked_channel(colors[1], channel) + w2 * unpacked_channel(colors[2], channel));
+      point.lit.diffuse[channel] = factor * point.lit.diffuse[channel];
+    }
+  }
+
+  // Puts the sums of a tile on the curve of sRGB. @param steps  of a sum that stands for a brightness of 1.
+  void put_on_curve(float steps) {
+    store_.work.add(Work::kSrgbLevel, 3 * Store::kTilePixels);
+    store_.work.charge_to(Work::kSrgbLevel);
+    for (auto& sums : store_.effects.sums) {
+      for (std::uint32_t& sum : sums) {
+        const float value = srgb_of(brightness_of(sum, 1.0f / steps));
+        sum = static_cast<std::uint32_t>(static_cast<std::int32_t>(value * steps + 0.5f));
+      }
+    }
   }
 
   // Finishes a point with its shading normal: makes the rays that leave it, and prepares its light.

@@ -2,6 +2,8 @@
 // by Remez' exchange, rounded to floats. Memory: values. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/lanes.h>
+
 #include <bit>
 #include <cstdint>
 
@@ -34,7 +36,7 @@ inline void sine_cosine_of_turn(float turn, float& sine, float& cosine) {
 /// exact; else |log2(base)| >= 1/2 and nothing cancels. log2(m) = s P(s^2), s = (m - 1) / (m + 1), |s| < 0.172, P
 /// within 2^-30.4 of itself. 2^z = 2^n 2^r, |r| <= 1/2, the latter within 2^-28.5 of itself.
 /// Source: core/EFFECTS.md, "Lights".
-[[nodiscard]] inline float power(float base, float exponent) {
+[[nodiscard]] GRIDIRON_OUTLINE inline float power(float base, float exponent) {
   static constexpr std::uint32_t kOne = 0x3F800000u, kRootOfHalf = 0x3F3504F3u;  // 1, sqrt(1/2), as patterns
   static constexpr float kLeast = 0x1p-126f;
   const float from = base < 1.0f ? (base >= kLeast ? base : kLeast) : 1.0f;

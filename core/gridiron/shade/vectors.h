@@ -45,14 +45,11 @@ constexpr GRIDIRON_INLINE void store(Vector3 a, float* target) {
   return (a.x * b.x + a.y * b.y) + a.z * b.z;
 }
 
-/// @returns the colour of a word, each channel 0..1.
-[[nodiscard]] GRIDIRON_INLINE Vector3 unpacked_color(PackedColor word) {
-  const auto channel = [word](std::uint32_t index) {
-    const std::uint32_t steps = word >> (kColorBits * index) & kColorSteps;
-    const float root = static_cast<float>(static_cast<std::int32_t>(steps)) * (1.0f / 1023.0f);
-    return root * root;
-  };
-  return {channel(0), channel(1), channel(2)};
+/// @returns a channel of a colour, 0 red to 2 blue: 0..1.
+[[nodiscard]] GRIDIRON_INLINE float unpacked_channel(PackedColor word, std::uint32_t channel) {
+  const std::uint32_t steps = word >> (kColorBits * channel) & kColorSteps;
+  const float root = static_cast<float>(static_cast<std::int32_t>(steps)) * (1.0f / 1023.0f);
+  return root * root;
 }
 
 /// a / |a|, its length 1 within 2^-21, for any finite size of a. The zero vector stays zero, so that a dot product with

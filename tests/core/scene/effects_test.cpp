@@ -217,15 +217,14 @@ TEST(PackedColors, HoldTheRootOfAColor) {
   EXPECT_EQ(packed_color({0, 0, 1}), 1023u << 20);
   for (std::uint32_t steps = 0; steps <= kColorSteps; ++steps) {
     const PackedColor word = steps | (kColorSteps - steps) << 10 | (steps / 2) << 20;
-    const Vector3 color = unpacked_color(word);
-    EXPECT_EQ(packed_color({color.x, color.y, color.z}), word);
+    EXPECT_EQ(packed_color({unpacked_channel(word, 0), unpacked_channel(word, 1), unpacked_channel(word, 2)}), word);
   }
   for (int i = 0; i <= 1000; ++i) {
     const float value = static_cast<float>(i) / 1000.0f;
-    const Vector3 color = unpacked_color(packed_color({0, value, 0}));
-    EXPECT_NEAR(std::sqrt(color.y), std::sqrt(value), 0.51 / 1023) << value;
-    EXPECT_EQ(color.x, 0.0f);
-    EXPECT_EQ(color.z, 0.0f);
+    const PackedColor word = packed_color({0, value, 0});
+    EXPECT_NEAR(std::sqrt(unpacked_channel(word, 1)), std::sqrt(value), 0.51 / 1023) << value;
+    EXPECT_EQ(unpacked_channel(word, 0), 0.0f);
+    EXPECT_EQ(unpacked_channel(word, 2), 0.0f);
   }
 }
 
