@@ -78,27 +78,27 @@ inline constexpr auto kInstructionCosts = std::to_array<InstructionCost>({
     {WorkId(56),   454.9},  // list_ray_node, of effects
     {WorkId(57),   457.7},  // list_box_quad, of effects
     {WorkId(58),   391.3},  // list_shared_box, of effects
-    {WorkId(59),  2193.2},  // list_leaf, of effects
-    {WorkId(60),   941.9},  // list_triangle_group, of effects
-    {WorkId(61),  3064.0},  // list_shared_leaf, of effects
-    {WorkId(62),   612.8},  // list_shared_group, of effects
+    {WorkId(59),  2190.2},  // list_leaf, of effects
+    {WorkId(60),   941.5},  // list_triangle_group, of effects
+    {WorkId(61),  3062.0},  // list_shared_leaf, of effects
+    {WorkId(62),   611.5},  // list_shared_group, of effects
     {WorkId(63),   285.9},  // list_candidate, of effects
     {WorkId(64),   326.4},  // ray_distance, of effects
-    {WorkId(65),  1422.3},  // surface_point, of effects
-    {WorkId(66),   322.8},  // smooth_normal, of effects
+    {WorkId(65),  1412.9},  // surface_point, of effects
+    {WorkId(66),   325.7},  // smooth_normal, of effects
     {WorkId(67),    47.0},  // jitter_seed, of effects
-    {WorkId(68),   117.5},  // shadow_ray, of effects
+    {WorkId(68),   123.1},  // shadow_ray, of effects
     {WorkId(69),    86.7},  // area_place, of effects
     {WorkId(70),    67.0},  // light_sample, of effects
-    {WorkId(71),   153.2},  // highlight, of effects
+    {WorkId(71),   151.2},  // highlight, of effects
     {WorkId(72),   184.5},  // occlusion_ray, of effects
     {WorkId(73),   159.9},  // mirror_ray, of effects
     {WorkId(74),   159.4},  // refracted_ray, of effects
     {WorkId(75),   386.3},  // environment_lookup, of effects
-    {WorkId(76),    69.4},  // color_added, of effects
+    {WorkId(76),    70.4},  // color_added, of effects
     {WorkId(77),   193.1},  // color_group, of effects
-    {WorkId(78),    60.0},  // vertex_color, of effects
-    {WorkId(79),    60.0},  // srgb_level, of effects
+    {WorkId(78),   120.2},  // vertex_color, of effects
+    {WorkId(79),    27.8},  // srgb_level, of effects
     {WorkId(83),   387.8},  // packet_start
     {WorkId(84),    23.0},  // pass_slope
     {WorkId(85),    15.7},  // mailbox_group

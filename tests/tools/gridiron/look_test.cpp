@@ -28,7 +28,7 @@ SceneInput with_look(SceneInput input, const LookRequest& request) {
   };
   const Camera camera = tool::complete_view({}, 1, points);
   const tool::LookStage stage = tool::stage_of(points);
-  tool::apply_look(input, request, camera, stage);
+  tool::apply_look(input, request, camera, tool::kUsualUp, stage);
   return input;
 }
 
@@ -90,6 +90,17 @@ TEST(CreaseNormals, AreSmoothBelowTheAngleAndSharpAbove) {
     EXPECT_NEAR(normal_at(limit, 0, 1).x, std::sin(20 * 0.0174533), 0.1) << limit;
     EXPECT_NEAR(normal_at(limit, 0, 0).z, 1, 1e-6) << "far from the edge";
   }
+}
+
+// At most: the angle itself is smooth.
+TEST(CreaseNormals, OfARightAngleAreSmoothAtNinety) {
+  const TestMesh mesh = bent_sheet(90);
+  const auto joined_at = [&mesh](float limit) {
+    const tool::MeshNormals made = tool::make_crease_normals(mesh.vertices, mesh.triangles, limit);
+    return made.triangles[0].y == made.triangles[2].x;
+  };
+  EXPECT_TRUE(joined_at(90));
+  EXPECT_FALSE(joined_at(89.9f));
 }
 
 TEST(CreaseNormals, OfABallAreTheBalls) {
@@ -161,20 +172,44 @@ TEST(Look, TheGroundLiesBelow) {
   }
 }
 
+// From above the camera's up lies in the ground; the ground follows that of the world.
+TEST(Look, TheGroundFollowsUpFromAnySide) {
+  for (const double elevation : {-90.0, 0.0, 90.0}) {
+    SceneInput input = input_of(make_sphere(8, 12, 1));
+    const tool::PointSource points = [&input](const tool::PointVisitor& visitor) {
+      tool::visit_points(std::get<tool::Mesh>(input.content).view(), visitor);
+    };
+    tool::ViewRequest view;
+    view.from = tool::ViewAngles{.azimuth = 0, .elevation = elevation};
+    view.up = Vec3(0, 0, 1);
+    const tool::LookStage stage = tool::stage_of(points);
+    const std::size_t own = std::get<tool::Mesh>(input.content).vertices.size();
+    tool::apply_look(input, {.is_studio = true}, tool::complete_view(view, 1, points), {0, 0, 1}, stage);
+    const auto& mesh = std::get<tool::Mesh>(input.content);
+    for (std::size_t i = own; i < mesh.vertices.size(); ++i) {
+      EXPECT_LT(mesh.vertices[i].z, -0.9f) << elevation;
+      EXPECT_GT(mesh.vertices[i].z, -1.1f) << elevation;
+    }
+  }
+}
+
 TEST(Look, ColorsOfTheFileAreKeptUnlessOneIsGiven) {
-  SceneInput input = input_of(make_sphere(8, 12, 1));
-  auto& mesh = std::get<tool::Mesh>(input.content);
-  mesh.surface.colors.assign(mesh.vertices.size(), Vec3(0.25f, 0.5f, 1));
-  mesh.surface.triangle_colors = mesh.triangles;
-  mesh.surface.triangle_colors[0] = UVec3(tool::kNoNormal);
-  const SceneInput colored = with_look(input, {.is_studio = true});
+  const auto input = [] {
+    SceneInput made = input_of(make_sphere(8, 12, 1));
+    auto& mesh = std::get<tool::Mesh>(made.content);
+    mesh.surface.colors.assign(mesh.vertices.size(), Vec3(0.25f, 0.5f, 1));
+    mesh.surface.triangle_colors = mesh.triangles;
+    mesh.surface.triangle_colors[0] = UVec3(tool::kNoNormal);
+    return made;
+  };
+  const SceneInput colored = with_look(input(), {.is_studio = true});
   EXPECT_EQ(calls_of(colored) & kVertexColors, kVertexColors);
   EXPECT_EQ(colored.effects->triangle_colors[0], UVec3(tool::kNoNormal));
   EXPECT_NE(colored.effects->triangle_materials[0], colored.effects->triangle_materials[1]);
-  const SceneInput plain = with_look(input, {.is_studio = true, .color = Vec3(1, 0, 0)});
+  const SceneInput plain = with_look(input(), {.is_studio = true, .color = Vec3(1, 0, 0)});
   EXPECT_EQ(calls_of(plain) & kVertexColors, 0u);
   EXPECT_EQ(plain.effects->materials[0].color, Vec3(1, 0, 0));
-  const SceneInput flat = with_look(input, {.smooth_degrees = 0.0f});
+  const SceneInput flat = with_look(input(), {.smooth_degrees = 0.0f});
   EXPECT_EQ(calls_of(flat) & kVertexColors, kVertexColors) << "facets have colours too";
 }
 

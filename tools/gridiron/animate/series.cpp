@@ -1,7 +1,9 @@
 // Series: an animation with a mesh or text scene for each frame. SPDX-License-Identifier: Apache-2.0
 #include <set>
+#include <span>
 #include <utility>
 
+#include "base/content_hash.h"
 #include "base/failure.h"
 #include "files/command_files.h"
 #include "files/input_file.h"
@@ -136,9 +138,11 @@ void Series::prepare() {
   }
   frame_together();
   if (!request_.scene.look.is_given()) return;
+  const Vec3 up = join_view(request_.view, camera_.value_or(ViewRequest{})).up.value_or(kUsualUp);
   std::vector<SeriesFrame*> frames;
   for (SeriesFrame& frame : frames_) frames.push_back(&frame);
   stage_ = stage_of(points_of(frames));
+  stage_->up = up;
 }
 
 PointSource Series::points_of(const std::vector<SeriesFrame*>& frames) {
@@ -172,7 +176,18 @@ FrameSource Series::source_of(std::size_t i) {
   SeriesFrame& frame = frames_[i];
   look_at(frame);
   const CountPair size = *picture_for(frame).size;
-  return {frame.content, hash_of_view(camera_of(view_of(frame), size.x, size.y), size.x, size.y)};
+  std::uint64_t view = hash_of_view(camera_of(view_of(frame), size.x, size.y), size.x, size.y);
+  if (stage_) {  // another frame may move the ground
+    const double places[] = {stage_->low.x,
+                             stage_->low.y,
+                             stage_->low.z,
+                             stage_->high.x,
+                             stage_->high.y,
+                             stage_->high.z,
+                             static_cast<double>(view >> 11)};
+    view = content_hash(std::as_bytes(std::span(places)));
+  }
+  return {frame.content, view};
 }
 
 MadeFrame Series::make(std::size_t i, bool has_timeline, const FrameProgress& progress) {

@@ -18,7 +18,7 @@ using sim::StoreSize;
 Shading shading_of(const RenderRequest& request, const KnownScene& scene) {
   const Shading shading = request.shading.value_or(scene.has_effects ? Shading::kScene : Shading::kSimple);
   if (shading != Shading::kScene) {
-    if (request.scene.look.is_given()) usage_error("--look and its parts: are of --shading scene");
+    if (request.scene.look.is_given()) usage_error("--look and its parts: require --shading scene");
     return shading;
   }
   if (!scene.is_read && scene.kind == SceneKind::kMesh && !scene.has_effects) {

@@ -47,7 +47,8 @@ void give_look(const RenderRequest& request, SceneInput& input, double aspect, c
   };
   require_renderable(input);
   const Camera camera = complete_view(view, aspect, points);
-  apply_look(input, request.scene.look, camera, stage != nullptr ? *stage : stage_of(points));
+  const Vec3 up = stage != nullptr ? stage->up : view.up.value_or(kUsualUp);
+  apply_look(input, request.scene.look, camera, up, stage != nullptr ? *stage : stage_of(points));
   view.eye = camera.eye;
   view.at = camera.at;
   view.up = camera.up;

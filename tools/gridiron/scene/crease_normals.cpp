@@ -48,7 +48,8 @@ class CreaseNormals {
       : vertices_(vertices),
         triangles_(triangles),
         places_(places_of(vertices)),
-        least_cosine_(std::cos(double{degrees} * std::numbers::pi / 180)) {}
+        // A right angle's cosine is not 0 in doubles, and 0 joins nothing.
+        least_cosine_(degrees > 0 ? std::cos(double{degrees} * std::numbers::pi / 180) - 1e-9 : 2.0) {}
 
   MeshNormals make() {
     faces_.reserve(triangles_.size());
@@ -103,6 +104,7 @@ class CreaseNormals {
     spokes_.clear();
     for (std::uint32_t i = 0; i < corners.size(); ++i) {
       corners[i].group = i;
+      if (faces_[corners[i].triangle] == DVec3(0.0)) continue;
       spokes_.push_back({place_of(corners[i], 1), i, true});
       spokes_.push_back({place_of(corners[i], 2), i, false});
     }
@@ -112,7 +114,7 @@ class CreaseNormals {
       const Spoke &a = spokes_[i - 1], &b = spokes_[i];
       if (a.end != b.end || a.is_next == b.is_next) continue;
       const DVec3 &one = faces_[corners[a.corner].triangle], &other = faces_[corners[b.corner].triangle];
-      if (one == DVec3(0.0) || other == DVec3(0.0) || glm::dot(one, other) < least_cosine_) continue;
+      if (glm::dot(one, other) < least_cosine_) continue;
       corners[group_of(corners, b.corner)].group = group_of(corners, a.corner);
     }
   }

@@ -28,9 +28,9 @@ constexpr std::uint32_t kAreaSamples = 4;  // of each sample of a pixel
 
 // Of a mesh without materials: clay with a faint shine.
 const SceneMaterial kPlain = {.color = {0.52f, 0.39f, 0.29f}, .kd = 0.92f, .ks = 0.08f, .shine = 40.0f};
-const Vec3 kPaper = {0.51f, 0.52f, 0.54f};  // of the ground
-const Vec3 kHeadColor = Vec3(0.9f);         // alone
-const Vec3 kFillColor = Vec3(0.30f);        // of the head light beside others
+const Vec3 kGroundColor = {0.51f, 0.52f, 0.54f};  // of the ground
+const Vec3 kHeadColor = Vec3(0.9f);               // alone
+const Vec3 kFillColor = Vec3(0.30f);              // of the head light beside others
 const Vec3 kKeyColor = {1.05f, 0.98f, 0.88f};
 const Vec3 kAreaColor = {0.26f, 0.32f, 0.42f};
 
@@ -61,14 +61,14 @@ struct Directions {
   }
 };
 
-Directions directions_of(const Camera& view, const LookStage& stage) {
+Directions directions_of(const Camera& view, const Vec3& up, const LookStage& stage) {
   Directions directions;
-  directions.up = unit_or_zero(DVec3(view.up));
+  directions.up = unit_or_zero(DVec3(up));
   const DVec3 back = DVec3(view.eye) - DVec3(view.at);
   DVec3 front = back - glm::dot(back, directions.up) * directions.up;
   if (!(glm::length(front) > 1e-6 * glm::length(back))) {  // from above: what is below in the picture is in front
-    const DVec3 across = std::fabs(directions.up.x) < 0.5 ? DVec3(1, 0, 0) : DVec3(0, 1, 0);
-    front = glm::cross(directions.up, across);
+    const DVec3 below = -DVec3(view.up);
+    front = below - glm::dot(below, directions.up) * directions.up;
   }
   directions.front = unit_or_zero(front);
   directions.right = glm::cross(directions.up, directions.front);
@@ -88,7 +88,7 @@ double lowest_of(const LookStage& stage, const DVec3& up) {
 // ---------------------------------------------------------------------------------------------------------
 
 // Normals of all triangles: the file's, or those of an angle.
-void give_normals(const Mesh& mesh, std::optional<float> degrees, SceneEffects& effects) {
+void give_normals(const Mesh& mesh, std::optional<float> degrees, bool is_studio, SceneEffects& effects) {
   const MeshSurface& surface = mesh.surface;
   const std::size_t count = mesh.triangles.size();
   if (!degrees && !surface.triangle_normals.empty()) {
@@ -97,7 +97,7 @@ void give_normals(const Mesh& mesh, std::optional<float> degrees, SceneEffects& 
     const bool is_whole = std::ranges::none_of(effects.triangle_normals,
                                                [](const UVec3& triangle) { return triangle == UVec3(kNoNormal); });
     if (is_whole) return;
-    MeshNormals made = make_crease_normals(mesh.vertices, mesh.triangles, kStudioSmoothDegrees);
+    MeshNormals made = make_crease_normals(mesh.vertices, mesh.triangles, is_studio ? kStudioSmoothDegrees : 0.0f);
     const auto first = static_cast<std::uint32_t>(effects.normals.size());
     effects.normals.insert(effects.normals.end(), made.normals.begin(), made.normals.end());
     for (std::size_t i = 0; i < count; ++i) {
@@ -145,7 +145,7 @@ void give_materials(const Mesh& mesh, const LookRequest& request, bool is_smooth
     if (effects.triangle_colors[i] == UVec3(kNoNormal)) continue;
     std::uint32_t& index = colored[effects.triangle_materials[i]];
     if (index == kNoNormal) {
-      if (effects.materials.size() == kMostSceneMaterials) {  // left with the colour of its material
+      if (effects.materials.size() + 1 >= kMostSceneMaterials) {  // left with that of its material; one is the ground's
         effects.triangle_colors[i] = UVec3(kNoNormal);
         continue;
       }
@@ -220,7 +220,7 @@ Vec3 light_on_ground(const LookLights& lights, bool has_occlusion, bool has_fill
   Vec3 light = Vec3(has_occlusion ? kAmbientLight : 0.0f);
   if (lights.key) light += share(kKeyElevation) * kKeyColor;
   if (lights.area) light += share(kAreaElevation) * kAreaColor;
-  if (lights.head) light += 0.5f * (has_fill ? kFillColor : kHeadColor);
+  if (lights.head || has_fill) light += 0.5f * (has_fill ? kFillColor : kHeadColor);
   return light;
 }
 
@@ -303,7 +303,8 @@ void check_look(const LookRequest& request, SceneKind kind) {
   }
 }
 
-void apply_look(SceneInput& input, const LookRequest& request, const Camera& view, const LookStage& stage) {
+void apply_look(SceneInput& input, const LookRequest& request, const Camera& view, const Vec3& up,
+                const LookStage& stage) {
   if (input.effects) {
     SceneEffects& own = *input.effects;
     if (request.background) {
@@ -315,14 +316,18 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
     if (request.levels) own.levels = *request.levels;
     if (request.occlusion) {
       own.occlusion_samples = *request.occlusion;
-      if (own.occlusion_radius == 0) own.occlusion_radius = static_cast<float>(directions_of(view, stage).radius);
+      if (own.occlusion_radius == 0) own.occlusion_radius = static_cast<float>(directions_of(view, up, stage).radius);
       if (own.occlusion_samples == 0) own.occlusion_radius = 0;
     }
     return;
   }
   const bool is_studio = request.is_studio;
   Mesh& mesh = std::get<Mesh>(input.content);
-  const Directions directions = directions_of(view, stage);
+  const Directions directions = directions_of(view, up, stage);
+  const double farthest = glm::length(directions.middle) + (kKeyDistance + 1) * directions.radius;
+  if (!(farthest < 0.5 * double{kCoordinateLimit})) {
+    input_error(input.path, "is too large for a look: its lights would be too far away");
+  }
   SceneEffects effects;
   const LookLights lights = request.lights.value_or(is_studio ? kStudioLights : LookLights{.head = true});
   const bool has_own_normals = !mesh.surface.triangle_normals.empty();
@@ -330,7 +335,7 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
   if (!degrees && is_studio && !has_own_normals) degrees = kStudioSmoothDegrees;
   const bool has_colors = !request.color && !mesh.surface.triangle_colors.empty();
   const bool is_smooth = degrees.value_or(has_own_normals ? 1.0f : 0.0f) > 0.0f || has_colors;
-  if (is_smooth) give_normals(mesh, degrees, effects);
+  if (is_smooth) give_normals(mesh, degrees, is_studio, effects);
   give_materials(mesh, request, is_smooth, effects);
 
   effects.occlusion_samples = request.occlusion.value_or(is_studio ? kStudioOcclusion : 0);
@@ -339,8 +344,9 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
   // Without ambient light what no light reaches would be black.
   const bool has_fill = (lights.key || lights.area) && (lights.head || !has_occlusion);
   if (request.ground.value_or(is_studio)) {
-    if (effects.materials.size() >= kMostSceneMaterials) input_error(input.path, "has too many materials for a ground");
-    add_ground(mesh, directions, stage, {.color = kPaper}, effects);
+    if (effects.materials.size() >= kMostSceneMaterials)
+      input_error(input.path, "has too many materials for a ground; --ground off renders it");
+    add_ground(mesh, directions, stage, {.color = kGroundColor}, effects);
   }
   if (lights.head || has_fill) effects.lights.push_back(light_at(DVec3(view.eye), has_fill ? kFillColor : kHeadColor));
   if (lights.key) {
@@ -349,7 +355,7 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
     effects.lights.push_back(light_at(place, kKeyColor));
   }
   if (lights.area) effects.lights.push_back(area_light(directions));
-  const Vec3 lit = kPaper * light_on_ground(request.lights.value_or(kStudioLights), has_occlusion, has_fill);
+  const Vec3 lit = kGroundColor * light_on_ground(request.lights.value_or(kStudioLights), has_occlusion, has_fill);
   effects.background = request.background.value_or(glm::min(lit, Vec3(1)));
   effects.samples_per_pixel = request.samples.value_or(is_studio ? kStudioSamples : 1);
   effects.levels = request.levels.value_or(ColorLevels::kSrgb);

@@ -12,12 +12,13 @@ namespace gridiron::tool {
 
 /// Lights of a look.
 struct LookLights {
-  bool head = false;  ///< a point at the eye: its shadows are not seen
+  bool head = false;  ///< a point at the first view's eye: its shadows are not seen from there
   bool key = false;   ///< a point
   bool area = false;
 };
 
-/// The parts of a look; those that are not given are the studio's, or else left out.
+/// The parts of a look. Those that are not given have the studio's values with is_studio; else there are a light at the
+/// eye, facets, one sample and no ground.
 struct LookRequest {
   bool is_studio = false;
   std::optional<Vec3> background{};  ///< linear
@@ -26,7 +27,7 @@ struct LookRequest {
   std::optional<LookLights> lights{};
   std::optional<std::uint32_t> samples{};    ///< of a pixel: 1, 4, 16
   std::optional<std::uint32_t> occlusion{};  ///< rays a point: 0..kMostEffectSamples
-  std::optional<float> smooth_degrees{};     ///< edges that bend less are smooth; 0..180
+  std::optional<float> smooth_degrees{};     ///< edges that bend by at most this are smooth; 0..180
   std::optional<ColorLevels> levels{};
 
   /// Whether a mesh gets effects.
