@@ -162,6 +162,7 @@ TEST(BvhRenderer, FourLinesOfEachCacheAreEnough) {
 TEST(BvhRenderer, FiguresAreTheSameInEveryRun) {
   const Bvh bvh = bvh_of(make_mixed_mesh());
   for (const sim::MachineProfile& machine : sim::machine_profiles()) {
+    if (machine.local_store_bytes < 256u << 10) continue;  // its store does not hold the caches
     RenderOptions options;
     const BvhFrame first = render_bvh_frame(bvh, settings_of(kMixedCamera, 320, 200), machine, options);
     ASSERT_EQ(first.status, Status::kOk);

@@ -45,6 +45,9 @@ inline constexpr std::string_view kShippedScenes[] = {
                                          std::uint32_t height, const KernelOptions& options = {});
 
 /// How far a picture may be from the reference's.
+/// What texts can call for: they bring no colours at vertices.
+inline constexpr std::uint32_t kTextEffects = kAllEffects & ~kVertexColors;
+
 struct PictureTolerance {
   std::size_t off_by_more_than_1 = 0;  ///< pixels
   double ray_share = 0.0;              ///< of any kind of rays

@@ -91,7 +91,7 @@ TEST(KernelChoice, WhatASceneDoesNotCallForHappensNever) {
       EXPECT_EQ(work[Work::kListRayNode], 0u);
     }
   }
-  EXPECT_EQ(called, kAllEffects);
+  EXPECT_EQ(called, kTextEffects);
   EXPECT_EQ(left_aside, kAllEffects & ~kSceneShading);
 }
 
@@ -99,7 +99,7 @@ TEST(KernelChoice, WhatASceneDoesNotCallForHappensNever) {
 TEST(KernelChoice, BuiltForJustItsEffectsASceneIsTheSame) {
   const std::vector<KernelVariant> variants = all_variants();
   ASSERT_EQ(variants.size() + 1, std::size(kShippedScenes));  // `everything` is the kernel with all
-  EXPECT_EQ(shipped("everything").scene.called_for, kAllEffects);
+  EXPECT_EQ(shipped("everything").scene.called_for, kTextEffects);
   for (const KernelVariant& variant : variants) {
     SCOPED_TRACE(variant.name);
     Shipped& scene = shipped(variant.name);
@@ -126,7 +126,7 @@ TEST(KernelChoice, WhatIsMissingIsToldByName) {
       seen |= picture.missing_effects;
     }
   }
-  EXPECT_EQ(seen, kAllEffects & ~kSceneShading);
+  EXPECT_EQ(seen, kTextEffects & ~kSceneShading);
   Shipped& scene = shipped("shadow");
   const Camera camera = camera_of(scene.description.view);
   EXPECT_EQ(render_without_effects(scene.scene, camera, 8, 8, {}).missing_effects, kSceneShading);

@@ -1,5 +1,7 @@
 // The same picture and the same work, however a core is built and whatever its platform is like.
 // SPDX-License-Identifier: Apache-2.0
+#include <glm/common.hpp>
+
 #include "effects/effect_scene.h"
 #include "effects/kernel_check.h"
 #include "effects/kernel_variants.h"
@@ -26,6 +28,15 @@ SceneDescription everything_small() {
   scene.area_lights.push_back({{1, 4, 1}, {1, 0, 0}, {0, 0, 1}, {0.5f, 0.4f, 0.3f}, 4});
   scene.ambient_occlusion = tool::AmbientOcclusion{4, 1.5f};
   scene.samples_per_pixel = 4;
+  scene.levels = ColorLevels::kSrgb;
+  for (tool::SceneMaterial& material : scene.materials) {
+    if (material.smooth_normals) material.vertex_colors = true;
+  }
+  for (const Vec3& vertex : scene.geometry.vertices) scene.geometry.colors.push_back(glm::abs(glm::fract(vertex)));
+  for (std::size_t i = 0; i < scene.geometry.triangles.size(); ++i) {
+    const bool is_colored = scene.materials[scene.geometry.triangle_materials[i]].vertex_colors;
+    scene.geometry.triangle_colors.push_back(is_colored ? scene.geometry.triangles[i] : UVec3(tool::kNoNormal));
+  }
   set_environment(scene, Vec3(0.4f), 9);
   for (std::size_t face = 0; face < tool::kCubeFaceCount; ++face) {
     for (std::size_t i = 0; i < 81; ++i) {

@@ -1,6 +1,7 @@
 // The scenes of the effects experiment. SPDX-License-Identifier: Apache-2.0
 #include "experiment/effect_scenes.h"
 
+#include <algorithm>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -105,6 +106,20 @@ tool::AmbientOcclusion occlusion_of(const tool::SceneView& view) {
   return {.samples = 4, .radius = 0.05f * glm::length(view.at - view.from)};
 }
 
+// Colours by height for all smooth materials, as no text has them.
+void color_vertices(tool::SceneDescription& description) {
+  tool::SceneGeometry& geometry = description.geometry;
+  for (tool::SceneMaterial& material : description.materials) material.vertex_colors = material.smooth_normals;
+  for (const Vec3& vertex : geometry.vertices) {
+    const float share = std::clamp(0.5f + 0.5f * vertex.y, 0.0f, 1.0f);
+    geometry.colors.emplace_back(1.0f - 0.5f * share, 0.6f + 0.4f * share, 0.8f);
+  }
+  for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
+    const bool is_colored = description.materials[geometry.triangle_materials[i]].vertex_colors;
+    geometry.triangle_colors.push_back(is_colored ? geometry.triangles[i] : UVec3(tool::kNoNormal));
+  }
+}
+
 EffectScene make_effect_scene(std::string_view key) {
   EffectScene scene;
   scene.key = key;
@@ -137,7 +152,10 @@ EffectScene make_effect_scene(std::string_view key) {
   } else {
     scene.description = read_effect_scene(key, kGallery);
     scene.description.environment = make_sky();
-    scene.words = "a scene of our own that calls for every effect: a mirror, a ball of glass, a matt cone and a patch";
+    color_vertices(scene.description);
+    scene.words =
+        "a scene of our own that calls for every effect: a mirror, a ball of glass, a matt cone and a patch; what is "
+        "smooth has colours at its vertices";
   }
   return scene;
 }

@@ -21,7 +21,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"experiment paper"}, "-o DIR is required"},
       {{"render", "info"}, "INPUT"},
       {{"render a.ply b.ply"}, "'b.ply' is an argument too many; render takes INPUT"},
-      {{"render a.ply --colour"}, "--colour is not an option of render\nrun 'gridiron help render'"},
+      {{"render a.ply --zebra"}, "--zebra is not an option of render\nrun 'gridiron help render'"},
       {{"render a.ply --szie 100x100", "render --szie 100x100 a.ply", "render --szie=100x100"},
        "--szie is not an option of render; did you mean --size?"},
       {{"render a.ply -size 100x100"}, "-size is not an option of render; did you mean --size?"},

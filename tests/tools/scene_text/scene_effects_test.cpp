@@ -22,7 +22,7 @@ TEST(SceneEffects, EachSceneCallsForItsEffect) {
       {"mirror", kReflection},           {"glass", kRefraction | kReflection},  // glass mirrors, too
       {"highlight", kHighlights},        {"ambient_occlusion", kAmbientOcclusion},
       {"environment", kEnvironment},     {"smooth_normals", kSmoothNormals},
-      {"multisampling", kMultisampling}, {"everything", kAllEffects},
+      {"multisampling", kMultisampling}, {"everything", kAllEffects & ~kVertexColors},
   };
   for (const auto& of : cases) {
     SCOPED_TRACE(of.name);
@@ -82,7 +82,7 @@ TEST(SceneEffects, EveryValueArrives) {
   EXPECT_EQ(view.occlusion_samples, 3u);
   EXPECT_EQ(view.occlusion_radius, 2.5f);
   EXPECT_EQ(view.environment_width, 0u);
-  EXPECT_EQ(effects_called_for(view), kAllEffects & ~kPointShadows & ~kEnvironment);
+  EXPECT_EQ(effects_called_for(view), kAllEffects & ~kPointShadows & ~kEnvironment & ~kVertexColors);
 }
 
 TEST(SceneEffects, FacesKeepTheirOrder) {

@@ -80,6 +80,7 @@ StoreSize choose_store(const sim::MachineProfile& machine, std::optional<StoreSi
   StoreSize chosen = asked.value_or(largest_store(machine));
   if (asked || is_built(chosen)) return chosen;
   for (const StoreSize store : sim::kEveryStoreSize) {
+    if (store == StoreSize::k16KB) continue;  // without a grid and effects: only where it is all there is, or asked for
     if (has_room(store) && is_built(store)) chosen = store;
   }
   return chosen;
