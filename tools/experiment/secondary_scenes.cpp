@@ -94,6 +94,8 @@ EffectScene with_rays_of(EffectScene scene, std::optional<RayKind> kind) {
   make_materials(description.materials, kind);
   description.geometry.normals.clear();
   description.geometry.triangle_normals.clear();
+  description.geometry.colors.clear();
+  description.geometry.triangle_colors.clear();
   description.environment.reset();
   description.background = Vec3(0.2f, 0.3f, 0.45f);
   description.samples_per_pixel = 1;
