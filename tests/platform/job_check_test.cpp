@@ -265,7 +265,7 @@ TEST(JobCheck, HoldsEffectsAgainstTheJob) {
        WRONG("frame record: fetch_depth", m.record().fetch_depth = 0),
        WRONG("effects", m.effects().called_for ^= kReflection), WRONG("effects", m.job().effects ^= kReflection),
        WRONG("effects reflection, smooth_normals are not built into this firmware", m.built &= ~kMirrors),
-       WRONG("effects 0x400 are not built", m.job().effects |= 1u << kEffectCount),
+       WRONG("effects 0x800 are not built", m.job().effects |= 1u << kEffectCount),
        WRONG("scene image: effects.light_count 257 ", m.effects().light_count = kMaxLights + 1),
        WRONG("scene image: effects.materials_offset_bytes", m.effects().materials_offset_bytes = ~127ull),
        WRONG("scene image: effects.lights_offset_bytes", m.effects().lights_offset_bytes += 16),
