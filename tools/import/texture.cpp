@@ -20,7 +20,7 @@
 namespace gridiron::tool {
 namespace {
 
-bool is_fit(std::uint64_t width, std::uint64_t height) {
+[[maybe_unused]] bool is_fit(std::uint64_t width, std::uint64_t height) {
   return width >= 1 && height >= 1 && width <= Texture::kMostWidth && height <= Texture::kMostWidth;
 }
 
