@@ -13,6 +13,8 @@ static_assert(kMostEnvironmentWidth <= kMaxEnvironmentWidth && kMostLightColor <
 static_assert(kNoNormal == kNoNormals &&
               kCubeFaceCount == std::tuple_size_v<decltype(SceneEffects::environment_faces)>);
 
+}  // namespace
+
 Material material_of(const SceneMaterial& material) {
   return {.color = material.color,
           .kd = material.kd,
@@ -23,8 +25,6 @@ Material material_of(const SceneMaterial& material) {
           .smooth_normals = material.smooth_normals,
           .vertex_colors = material.vertex_colors};
 }
-
-}  // namespace
 
 EffectsView SceneEffects::view() const {
   EffectsView effects;

@@ -36,6 +36,9 @@ struct SceneEffects {
   [[nodiscard]] EffectsView view() const;
 };
 
+/// @returns a material in the image builder's form.
+[[nodiscard]] Material material_of(const SceneMaterial& material);
+
 /// Takes the effects out of a scene: geometry keeps only its vertices and triangles, the environment its width and
 /// paths.
 [[nodiscard]] SceneEffects take_scene_effects(SceneDescription& scene);

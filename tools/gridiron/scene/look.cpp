@@ -110,14 +110,9 @@ void give_normals(const Mesh& mesh, std::optional<float> degrees, bool is_studio
   effects.triangle_normals = std::move(made.triangles);
 }
 
-Material material_of(const SceneMaterial& material, bool is_smooth) {
-  return {.color = material.color,
-          .kd = material.kd,
-          .ks = material.ks,
-          .shine = material.shine,
-          .transmittance = material.transmittance,
-          .index = material.index_of_refraction,
-          .smooth_normals = is_smooth};
+Material material_with(SceneMaterial material, bool is_smooth) {
+  material.smooth_normals = is_smooth;
+  return material_of(material);
 }
 
 // Materials of all triangles: each one of the file twice, the second with colours at vertices.
@@ -127,7 +122,7 @@ void give_materials(const Mesh& mesh, const LookRequest& request, bool is_smooth
   if (request.color || surface.is_empty() || (surface.triangle_materials.empty() && surface.triangle_colors.empty())) {
     SceneMaterial plain = kPlain;
     if (request.color) plain.color = *request.color;
-    effects.materials = {material_of(plain, is_smooth)};
+    effects.materials = {material_with(plain, is_smooth)};
     effects.triangle_materials.assign(count, 0);
     return;
   }
@@ -135,7 +130,7 @@ void give_materials(const Mesh& mesh, const LookRequest& request, bool is_smooth
   if (surface.triangle_materials.empty()) own = {kPlain};
   effects.triangle_materials = surface.triangle_materials;
   effects.triangle_materials.resize(count, 0);
-  for (const SceneMaterial& material : own) effects.materials.push_back(material_of(material, is_smooth));
+  for (const SceneMaterial& material : own) effects.materials.push_back(material_with(material, is_smooth));
   if (surface.triangle_colors.empty()) return;
 
   effects.colors = surface.colors;
