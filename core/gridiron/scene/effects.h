@@ -41,7 +41,7 @@ struct EffectsView {
   std::span<const Vec3> normals;                        ///< unit to 2^-10
   std::span<const UVec3> triangle_normals;              ///< empty, or one per triangle: into normals, or kNoNormals
   std::span<const Vec3> colors;                         ///< linear, 0..1 each
-  std::span<const UVec3> triangle_colors;               ///< empty, or one per triangle: into colors, or kNoColors
+  std::span<const UVec3> triangle_colors;               ///< empty, or one per triangle: into colors, or kNoNormals
   std::span<const Light> lights;                        ///< 0..kMaxLights, point lights first
   Vec3 background{0, 0, 0};                             ///< 0..1 each
   bool has_shadows = true;                              ///< of all lights
