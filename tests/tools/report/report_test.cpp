@@ -117,7 +117,7 @@ Json documented_report() {
         "list_leaf", "list_triangle_group", "list_shared_leaf", "list_shared_group", "list_candidate", "ray_distance",
         "surface_point", "smooth_normal", "jitter_seed", "shadow_ray",
         "area_place", "light_sample", "highlight", "occlusion_ray", "mirror_ray",
-        "refracted_ray", "environment_lookup", "color_added", "color_group",
+        "refracted_ray", "environment_lookup", "color_added", "color_group", "vertex_color", "srgb_level",
         "get_issue", "put_issue", "wait", "packet_start",
         "pass_slope", "mailbox_group", "pass_group", "pass_square",
         "macro_slice_step", "macro_row", "macro_cell_step", "macro_cell_visit",
