@@ -108,7 +108,7 @@ using PackedColor = std::uint32_t;
 inline constexpr std::uint32_t kColorSteps = 1023;  ///< of a channel from 0 to 1
 inline constexpr std::uint32_t kColorBits = 10;     ///< of a channel
 
-/// Normals at a triangle's corners, unit to rounding, outwards, and the corners' colours.
+/// Normals at a triangle's corners, of length 1 to 2^-10, outwards, and the corners' colours.
 struct NormalRecord {
   float n[3][3];          ///< corner, axis
   PackedColor colors[3];  ///< of each corner; 0 unless the material has_colors

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "base/failure.h"
 #include "gridiron/scene/crease_normals.h"
@@ -27,8 +29,7 @@ SceneInput with_look(SceneInput input, const LookRequest& request) {
     tool::visit_points(std::get<tool::Mesh>(input.content).view(), visitor);
   };
   const Camera camera = tool::complete_view({}, 1, points);
-  const tool::LookStage stage = tool::stage_of(points);
-  tool::apply_look(input, request, camera, tool::kUsualUp, stage);
+  tool::apply_look(input, request, camera, tool::look_bounds_of(points, tool::kUsualUp));
   return input;
 }
 
@@ -182,13 +183,36 @@ TEST(Look, TheGroundFollowsUpFromAnySide) {
     tool::ViewRequest view;
     view.from = tool::ViewAngles{.azimuth = 0, .elevation = elevation};
     view.up = Vec3(0, 0, 1);
-    const tool::LookStage stage = tool::stage_of(points);
+    const tool::LookBounds bounds = tool::look_bounds_of(points, {0, 0, 1});
     const std::size_t own = std::get<tool::Mesh>(input.content).vertices.size();
-    tool::apply_look(input, {.is_studio = true}, tool::complete_view(view, 1, points), {0, 0, 1}, stage);
+    tool::apply_look(input, {.is_studio = true}, tool::complete_view(view, 1, points), bounds);
     const auto& mesh = std::get<tool::Mesh>(input.content);
     for (std::size_t i = own; i < mesh.vertices.size(); ++i) {
       EXPECT_LT(mesh.vertices[i].z, -0.9f) << elevation;
       EXPECT_GT(mesh.vertices[i].z, -1.1f) << elevation;
+    }
+  }
+}
+
+// Below every vertex, nearly touching: whatever up is, and where the ground's own vertices are rounded.
+TEST(Look, TheGroundLiesJustBelow) {
+  for (const Vec3& up : {Vec3(0, 1, 0), Vec3(0, 0, -2), Vec3(1, 1, 0), Vec3(0.3f, -0.5f, 0.8f)}) {
+    for (const float away : {0.0f, 1e5f}) {
+      TestMesh sphere = make_sphere(16, 24, 1);
+      for (Vec3& vertex : sphere.vertices) vertex += away;
+      SceneInput input = input_of(sphere);
+      const tool::PointSource points = [&sphere](const tool::PointVisitor& visitor) { visitor(sphere.vertices); };
+      const tool::LookBounds bounds = tool::look_bounds_of(points, up);
+      tool::apply_look(input, {.is_studio = true}, tool::complete_view({}, 1, points), bounds);
+      const DVec3 unit = unit_or_zero(DVec3(up));
+      double lowest = std::numeric_limits<double>::infinity();
+      for (const Vec3& vertex : sphere.vertices) lowest = std::min(lowest, glm::dot(unit, DVec3(vertex)));
+      const auto& mesh = std::get<tool::Mesh>(input.content);
+      for (std::size_t i = sphere.vertices.size(); i < mesh.vertices.size(); ++i) {
+        const double height = glm::dot(unit, DVec3(mesh.vertices[i]));
+        EXPECT_LT(height, lowest) << away;
+        EXPECT_GT(height, lowest - (away == 0 ? 0.001 : 0.1)) << away;
+      }
     }
   }
 }

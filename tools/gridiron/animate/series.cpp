@@ -77,8 +77,8 @@ class Series final : public FrameMaker {
   const RenderRequest& request_;
   std::optional<ViewRequest> camera_;
   std::vector<SeriesFrame> frames_;
-  std::optional<CountPair> size_;   // of all pictures
-  std::optional<LookStage> stage_;  // of all frames, where they have a look: its ground stays where it is
+  std::optional<CountPair> size_;     // of all pictures
+  std::optional<LookBounds> bounds_;  // of all frames, where they have a look: its ground stays where it is
   bool has_told_ = false;
   std::optional<VertexOrder> vertex_order_;  // meshes of one topology have one
 };
@@ -141,8 +141,7 @@ void Series::prepare() {
   const Vec3 up = join_view(request_.view, camera_.value_or(ViewRequest{})).up.value_or(kUsualUp);
   std::vector<SeriesFrame*> frames;
   for (SeriesFrame& frame : frames_) frames.push_back(&frame);
-  stage_ = stage_of(points_of(frames));
-  stage_->up = up;
+  bounds_ = look_bounds_of(points_of(frames), up);
 }
 
 PointSource Series::points_of(const std::vector<SeriesFrame*>& frames) {
@@ -177,14 +176,9 @@ FrameSource Series::source_of(std::size_t i) {
   look_at(frame);
   const CountPair size = *picture_for(frame).size;
   std::uint64_t view = hash_of_view(camera_of(view_of(frame), size.x, size.y), size.x, size.y);
-  if (stage_) {  // another frame may move the ground
-    const double places[] = {stage_->low.x,
-                             stage_->low.y,
-                             stage_->low.z,
-                             stage_->high.x,
-                             stage_->high.y,
-                             stage_->high.z,
-                             static_cast<double>(view >> 11)};
+  if (bounds_) {  // another frame may move the ground
+    const double places[] = {bounds_->low.x,  bounds_->low.y,  bounds_->low.z,  bounds_->high.x,
+                             bounds_->high.y, bounds_->high.z, bounds_->lowest, static_cast<double>(view >> 11)};
     view = content_hash(std::as_bytes(std::span(places)));
   }
   return {frame.content, view};
@@ -197,7 +191,7 @@ MadeFrame Series::make(std::size_t i, bool has_timeline, const FrameProgress& pr
   RenderRequest request = request_;
   request.scene.input = frame.input;
   request.view = frame.framed.value_or(request_.view);
-  RequestedFrame requested = complete_frame(request, std::move(input), camera_, stage_ ? &*stage_ : nullptr);
+  RequestedFrame requested = complete_frame(request, std::move(input), camera_, bounds_ ? &*bounds_ : nullptr);
   choose_builder(animate_, requested.plan);
   if (has_told_ && !frame.moment && !request.scene.quiet) tell_notes(requested.input);
   if (!std::exchange(has_told_, true)) tell_frame_notes(request, requested);

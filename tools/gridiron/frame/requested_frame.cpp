@@ -39,7 +39,7 @@ void check_scene_view(const RenderRequest& request, const RequestedFrame& frame)
 }
 
 // The mesh alone is framed, without its ground.
-void give_look(const RenderRequest& request, SceneInput& input, double aspect, const LookStage* stage,
+void give_look(const RenderRequest& request, SceneInput& input, double aspect, const LookBounds* bounds,
                ViewRequest& view) {
   check_look(request.scene.look, known_scene(input).kind);
   const PointSource points = [&input](const PointVisitor& visitor) {
@@ -47,8 +47,8 @@ void give_look(const RenderRequest& request, SceneInput& input, double aspect, c
   };
   require_renderable(input);
   const Camera camera = complete_view(view, aspect, points);
-  const Vec3 up = stage != nullptr ? stage->up : view.up.value_or(kUsualUp);
-  apply_look(input, request.scene.look, camera, up, stage != nullptr ? *stage : stage_of(points));
+  const Vec3 up = view.up.value_or(kUsualUp);
+  apply_look(input, request.scene.look, camera, bounds != nullptr ? *bounds : look_bounds_of(points, up));
   view.eye = camera.eye;
   view.at = camera.at;
   view.up = camera.up;
@@ -79,14 +79,14 @@ void tell_frame_notes(const RenderRequest& request, const RequestedFrame& frame)
 }
 
 RequestedFrame complete_frame(const RenderRequest& request, SceneInput input, const std::optional<ViewRequest>& camera,
-                              const LookStage* stage) {
+                              const LookBounds* bounds) {
   RequestedFrame frame;
   frame.input = std::move(input);
   const PictureRequest picture =
       complete_request({request.view, camera, request.size}, frame.input.text ? frame.input.text->view : SceneView{});
   frame.view = join_view(picture.view, *picture.camera);
   if (request.scene.look.is_given()) {
-    give_look(request, frame.input, static_cast<double>(picture.size->x) / picture.size->y, stage, frame.view);
+    give_look(request, frame.input, static_cast<double>(picture.size->x) / picture.size->y, bounds, frame.view);
   }
   frame.plan = resolve(request, known_scene(frame.input), this_host());
   check_scene_view(request, frame);

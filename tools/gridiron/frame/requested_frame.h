@@ -30,9 +30,10 @@ struct RequestedFrame {
 
 /// Completes the frame of a scene that was read; prints no notes of the scene. @param camera  that the request names.
 /// Errors: Failure.
-/// @param stage  of a look; null: that of the scene.
+/// @param bounds  of a look; null: that of the scene.
 [[nodiscard]] RequestedFrame complete_frame(const RenderRequest& request, SceneInput input,
-                                            const std::optional<ViewRequest>& camera, const LookStage* stage = nullptr);
+                                            const std::optional<ViewRequest>& camera,
+                                            const LookBounds* bounds = nullptr);
 
 /// Where `best` is the default but has no bounds in one of the views, the plan becomes that of `grid`, if the scene has
 /// one; a note says so unless quiet.

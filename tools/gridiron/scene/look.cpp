@@ -53,7 +53,7 @@ double to_linear(double srgb) {
 struct Directions {
   DVec3 up, right, front;  // unit; front leads to the viewer, without what it has of up
   DVec3 middle;
-  double radius = 0;  // of the ball around the stage
+  double radius = 0;  // of the ball around the bounds
 
   [[nodiscard]] DVec3 toward(double azimuth, double elevation) const {
     const double a = azimuth * std::numbers::pi / 180, e = elevation * std::numbers::pi / 180;
@@ -61,9 +61,9 @@ struct Directions {
   }
 };
 
-Directions directions_of(const Camera& view, const Vec3& up, const LookStage& stage) {
+Directions directions_of(const Camera& view, const LookBounds& bounds) {
   Directions directions;
-  directions.up = unit_or_zero(DVec3(up));
+  directions.up = bounds.up;
   const DVec3 back = DVec3(view.eye) - DVec3(view.at);
   DVec3 front = back - glm::dot(back, directions.up) * directions.up;
   if (!(glm::length(front) > 1e-6 * glm::length(back))) {  // from above: what is below in the picture is in front
@@ -72,20 +72,12 @@ Directions directions_of(const Camera& view, const Vec3& up, const LookStage& st
   }
   directions.front = unit_or_zero(front);
   directions.right = glm::cross(directions.up, directions.front);
-  directions.middle = 0.5 * (stage.low + stage.high);
-  directions.radius = 0.5 * glm::length(stage.high - stage.low);
+  directions.middle = 0.5 * (bounds.low + bounds.high);
+  directions.radius = 0.5 * glm::length(bounds.high - bounds.low);
   return directions;
 }
 
-// The lowest place of the stage's box along up.
-double lowest_of(const LookStage& stage, const DVec3& up) {
-  double lowest = 0;
-  for (int axis = 0; axis < 3; ++axis) lowest += up[axis] * (up[axis] > 0 ? stage.low[axis] : stage.high[axis]);
-  return lowest;
-}
-
-// --- Surfaces
-// ---------------------------------------------------------------------------------------------------------
+// --- Surfaces --------------------------------------------------------------------------------------------------------
 
 // Normals of all triangles: the file's, or those of an angle.
 void give_normals(const Mesh& mesh, std::optional<float> degrees, bool is_studio, SceneEffects& effects) {
@@ -154,14 +146,16 @@ void give_materials(const Mesh& mesh, const LookRequest& request, bool is_smooth
   }
 }
 
-// --- Ground and lights
-// ------------------------------------------------------------------------------------------------
+// --- Ground and lights -----------------------------------------------------------------------------------------------
 
-// Adds a disc of rings below the stage. Rings grow by a constant factor, so that triangles are small near the object.
-void add_ground(Mesh& mesh, const Directions& directions, const LookStage& stage, const Material& material,
+// Adds a disc of rings below the object. Rings grow by a constant factor, so that triangles are small near the object.
+void add_ground(Mesh& mesh, const Directions& directions, const LookBounds& bounds, const Material& material,
                 SceneEffects& effects) {
   const double radius = directions.radius;
-  const double height = lowest_of(stage, directions.up) - kGroundGap * radius;
+  // Far from the origin the ground's own vertices are rounded by more than the gap.
+  const double farthest = glm::length(directions.middle) + kGroundRadius * radius;
+  const double gap = std::max(kGroundGap * radius, 2 * farthest * std::numeric_limits<float>::epsilon());
+  const double height = bounds.lowest - gap;
   const DVec3 foot = directions.middle + (height - glm::dot(directions.middle, directions.up)) * directions.up;
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   const auto index = static_cast<std::uint16_t>(effects.materials.size());
@@ -219,8 +213,7 @@ Vec3 light_on_ground(const LookLights& lights, bool has_occlusion, bool has_fill
   return light;
 }
 
-// --- Words
-// ------------------------------------------------------------------------------------------------------------
+// --- Words -----------------------------------------------------------------------------------------------------------
 
 constexpr auto kColorNames = std::to_array<std::string_view>(
     {"white", "light", "grey", "dark", "black", "clay", "red", "orange", "yellow", "green", "teal", "blue", "violet"});
@@ -231,15 +224,17 @@ static_assert(kColorNames.size() == kColorValues.size());
 
 }  // namespace
 
-LookStage stage_of(const PointSource& points) {
-  LookStage stage{DVec3(std::numeric_limits<double>::infinity()), DVec3(-std::numeric_limits<double>::infinity())};
-  points([&stage](std::span<const Vec3> some) {
+LookBounds look_bounds_of(const PointSource& points, const Vec3& up) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  LookBounds bounds{DVec3(kFar), DVec3(-kFar), unit_or_zero(DVec3(up)), kFar};
+  points([&bounds](std::span<const Vec3> some) {
     for (const Vec3& point : some) {
-      stage.low = glm::min(stage.low, DVec3(point));
-      stage.high = glm::max(stage.high, DVec3(point));
+      bounds.low = glm::min(bounds.low, DVec3(point));
+      bounds.high = glm::max(bounds.high, DVec3(point));
+      bounds.lowest = std::min(bounds.lowest, glm::dot(DVec3(point), bounds.up));
     }
   });
-  return stage;
+  return bounds;
 }
 
 std::span<const std::string_view> color_names() {
@@ -298,8 +293,7 @@ void check_look(const LookRequest& request, SceneKind kind) {
   }
 }
 
-void apply_look(SceneInput& input, const LookRequest& request, const Camera& view, const Vec3& up,
-                const LookStage& stage) {
+void apply_look(SceneInput& input, const LookRequest& request, const Camera& view, const LookBounds& bounds) {
   if (input.effects) {
     SceneEffects& own = *input.effects;
     if (request.background) {
@@ -311,14 +305,14 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
     if (request.levels) own.levels = *request.levels;
     if (request.occlusion) {
       own.occlusion_samples = *request.occlusion;
-      if (own.occlusion_radius == 0) own.occlusion_radius = static_cast<float>(directions_of(view, up, stage).radius);
+      if (own.occlusion_radius == 0) own.occlusion_radius = static_cast<float>(directions_of(view, bounds).radius);
       if (own.occlusion_samples == 0) own.occlusion_radius = 0;
     }
     return;
   }
   const bool is_studio = request.is_studio;
   Mesh& mesh = std::get<Mesh>(input.content);
-  const Directions directions = directions_of(view, up, stage);
+  const Directions directions = directions_of(view, bounds);
   const double farthest = glm::length(directions.middle) + (kKeyDistance + 1) * directions.radius;
   if (!(farthest < 0.5 * double{kCoordinateLimit})) {
     input_error(input.path, "is too large for a look: its lights would be too far away");
@@ -341,7 +335,7 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
   if (request.ground.value_or(is_studio)) {
     if (effects.materials.size() >= kMostSceneMaterials)
       input_error(input.path, "has too many materials for a ground; --ground off renders it");
-    add_ground(mesh, directions, stage, {.color = kGroundColor}, effects);
+    add_ground(mesh, directions, bounds, {.color = kGroundColor}, effects);
   }
   if (lights.head || has_fill) effects.lights.push_back(light_at(DVec3(view.eye), has_fill ? kFillColor : kHeadColor));
   if (lights.key) {

@@ -18,14 +18,15 @@ namespace gridiron::tool {
 
 inline constexpr Vec3 kUsualUp = {0, 1, 0};
 
-/// Where an object stands: the box around it, or around all frames of a series.
-struct LookStage {
+/// Where an object lies: the box around it, or around all frames of a series, and its lowest place.
+struct LookBounds {
   DVec3 low{0.0}, high{0.0};
-  Vec3 up = kUsualUp;  ///< away from the ground
+  DVec3 up{kUsualUp};  ///< unit: away from the ground
+  double lowest = 0;   ///< the least product of a point and up
 };
 
-/// @returns the box around the points. Precondition: there are some.
-[[nodiscard]] LookStage stage_of(const PointSource& points);
+/// @returns the bounds of the points. @param up  away from the ground; not zero. Precondition: there are some points.
+[[nodiscard]] LookBounds look_bounds_of(const PointSource& points, const Vec3& up);
 
 /// @returns the colour of "RRGGBB", "#RRGGBB", sRGB, or of a name of color_names(): linear, 0..1 each.
 [[nodiscard]] std::optional<Vec3> parse_color(std::string_view text);
@@ -42,11 +43,10 @@ struct LookStage {
 /// Directions: the lights stand still, where the first view has its left and its up. The key light, a point, shines
 /// from the left over the viewer's shoulder; the area light from the right; both from so far away that the ground is
 /// lit evenly. The background has the colour of the lit ground, so that the ground seems to have no end.
-/// @param view  with eye and at. @param up  of the world, away from the ground. @param stage  the mesh's own, or of a
-/// series. Precondition: check_look() accepts request and scene. Errors: Failure (kBadInput) if there are too many
-/// materials for a ground, or the lights would be too far away.
-void apply_look(SceneInput& input, const LookRequest& request, const Camera& view, const Vec3& up,
-                const LookStage& stage);
+/// @param view  with eye and at. @param bounds  the mesh's own, or of a series. Precondition: check_look() accepts
+/// request and scene. Errors: Failure (kBadInput) if there are too many materials for a ground, or the lights would be
+/// too far away.
+void apply_look(SceneInput& input, const LookRequest& request, const Camera& view, const LookBounds& bounds);
 
 /// Throws Failure (kUsage) if a look cannot be had for this kind of scene.
 void check_look(const LookRequest& request, SceneKind kind);
