@@ -204,7 +204,7 @@ TEST(Look, TheGroundLiesJustBelow) {
       const tool::PointSource points = [&sphere](const tool::PointVisitor& visitor) { visitor(sphere.vertices); };
       const tool::LookBounds bounds = tool::look_bounds_of(points, up);
       tool::apply_look(input, {.is_studio = true}, tool::complete_view({}, 1, points), bounds);
-      const DVec3 unit = unit_or_zero(DVec3(up));
+      const DVec3 unit = tool::unit_or_zero(DVec3(up));
       double lowest = std::numeric_limits<double>::infinity();
       for (const Vec3& vertex : sphere.vertices) lowest = std::min(lowest, glm::dot(unit, DVec3(vertex)));
       const auto& mesh = std::get<tool::Mesh>(input.content);
