@@ -162,7 +162,7 @@ void Series::frame_together() {
     if (!view.eye || !view.at) unframed.push_back(&frame);
   }
   if (unframed.empty()) return;
-  ViewRequest view = view_of(*unframed.front());
+  ViewRequest view = look_view(request_.scene.look, view_of(*unframed.front()));
   const Camera camera = complete_view(view, static_cast<double>(size_->x) / size_->y, points_of(unframed));
   view.eye = camera.eye;
   view.at = camera.at;

@@ -46,6 +46,7 @@ void give_look(const RenderRequest& request, SceneInput& input, double aspect, c
     visit_points(std::get<Mesh>(input.content).view(), visitor);
   };
   require_renderable(input);
+  view = look_view(request.scene.look, view);
   const Camera camera = complete_view(view, aspect, points);
   const Vec3 up = view.up.value_or(kUsualUp);
   apply_look(input, request.scene.look, camera, bounds != nullptr ? *bounds : look_bounds_of(points, up));

@@ -24,26 +24,27 @@ namespace {
 constexpr LookLights kStudioLights = {.head = false, .key = true, .area = true};
 constexpr std::uint32_t kStudioSamples = 4, kStudioOcclusion = 16;
 constexpr float kStudioSmoothDegrees = 35.0f;
-constexpr std::uint32_t kAreaSamples = 4;  // of each sample of a pixel
+constexpr float kStudioFovDegrees = 30.0f;
+constexpr std::uint32_t kKeySamples = 4, kAreaSamples = 2;  // of each sample of a pixel
 
 // Of a mesh without materials: clay with a faint shine.
-const SceneMaterial kPlain = {.color = {0.52f, 0.39f, 0.29f}, .kd = 0.92f, .ks = 0.08f, .shine = 40.0f};
-const Vec3 kGroundColor = {0.51f, 0.52f, 0.54f};  // of the ground
+const SceneMaterial kPlain = {.color = {0.56f, 0.42f, 0.31f}, .kd = 0.86f, .ks = 0.14f, .shine = 40.0f};
+const Vec3 kGroundColor = {0.42f, 0.43f, 0.44f};  // of the ground
 const Vec3 kHeadColor = Vec3(0.9f);               // alone
 const Vec3 kFillColor = Vec3(0.30f);              // of the head light beside others
-const Vec3 kKeyColor = {1.05f, 0.98f, 0.88f};
-const Vec3 kAreaColor = {0.26f, 0.32f, 0.42f};
+const Vec3 kKeyColor = {1.20f, 1.14f, 1.06f};
+const Vec3 kAreaColor = {0.30f, 0.34f, 0.39f};
 
 // Where the lights stand, seen from the object: degrees from the view to the right and upwards; distance and edge in
 // radii of the object. They are far, so that the ground is lit evenly.
-constexpr double kKeyAzimuth = -42, kKeyElevation = 48, kKeyDistance = 2000;
+constexpr double kKeyAzimuth = -48, kKeyElevation = 48, kKeyDistance = 2000, kKeyEdge = 260;
 constexpr double kAreaAzimuth = 70, kAreaElevation = 42, kAreaDistance = 600, kAreaEdge = 420;
 
 // The ground: rings of triangles, small below the object.
 constexpr std::uint32_t kGroundSegments = 48, kGroundRings = 12;
 constexpr double kGroundRadius = 24;       // in radii of the object
 constexpr double kGroundGap = 1.0 / 4096;  // below the object, likewise: they never share a plane
-constexpr double kOcclusionRadius = 1.0;   // likewise
+constexpr double kOcclusionRadius = 0.7;   // likewise
 
 double to_linear(double srgb) {
   return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
@@ -190,17 +191,28 @@ Light light_at(const DVec3& place, const Vec3& color) {
   return {.corner = Vec3(place), .color = color};
 }
 
-// A square that faces the object.
-Light area_light(const Directions& directions) {
-  const DVec3 toward = directions.toward(kAreaAzimuth, kAreaElevation);
+// A square that faces the object. @param distance, edge  in radii of the object.
+Light square_light(const Directions& directions, const DVec3& toward, double distance, double edge) {
   const DVec3 across = unit_or_zero(glm::cross(directions.up, toward)), along = glm::cross(toward, across);
-  const double edge = kAreaEdge * directions.radius;
-  const DVec3 middle = directions.middle + kAreaDistance * directions.radius * toward;
-  return {.corner = Vec3(middle - 0.5 * edge * (across + along)),
-          .edge_u = Vec3(edge * across),
-          .edge_v = Vec3(edge * along),
-          .color = kAreaColor,
-          .samples = kAreaSamples};
+  const double length = edge * directions.radius;
+  const DVec3 middle = directions.middle + distance * directions.radius * toward;
+  return {.corner = Vec3(middle - 0.5 * length * (across + along)),
+          .edge_u = Vec3(length * across),
+          .edge_v = Vec3(length * along)};
+}
+
+Light key_light(const Directions& directions) {
+  Light light = square_light(directions, directions.toward(kKeyAzimuth, kKeyElevation), kKeyDistance, kKeyEdge);
+  light.color = kKeyColor;
+  light.samples = kKeySamples;
+  return light;
+}
+
+Light area_light(const Directions& directions) {
+  Light light = square_light(directions, directions.toward(kAreaAzimuth, kAreaElevation), kAreaDistance, kAreaEdge);
+  light.color = kAreaColor;
+  light.samples = kAreaSamples;
+  return light;
 }
 
 // The brightness of the ground where nothing shades it, in proportion to its colour.
@@ -276,6 +288,11 @@ std::optional<LookLights> parse_lights(std::string_view text) {
   }
 }
 
+ViewRequest look_view(const LookRequest& request, ViewRequest view) {
+  if (request.is_studio && !view.eye && !view.fov_degrees) view.fov_degrees = kStudioFovDegrees;
+  return view;
+}
+
 void check_look(const LookRequest& request, SceneKind kind) {
   if (!request.is_given()) return;
   if (kind == SceneKind::kPacked) {
@@ -338,11 +355,7 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
     add_ground(mesh, directions, bounds, {.color = kGroundColor}, effects);
   }
   if (lights.head || has_fill) effects.lights.push_back(light_at(DVec3(view.eye), has_fill ? kFillColor : kHeadColor));
-  if (lights.key) {
-    const DVec3 place =
-        directions.middle + kKeyDistance * directions.radius * directions.toward(kKeyAzimuth, kKeyElevation);
-    effects.lights.push_back(light_at(place, kKeyColor));
-  }
+  if (lights.key) effects.lights.push_back(key_light(directions));
   if (lights.area) effects.lights.push_back(area_light(directions));
   const Vec3 lit = kGroundColor * light_on_ground(request.lights.value_or(kStudioLights), has_occlusion, has_fill);
   effects.background = request.background.value_or(glm::min(lit, Vec3(1)));

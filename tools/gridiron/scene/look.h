@@ -40,13 +40,17 @@ struct LookBounds {
 /// Puts a mesh into its look: triangles of the ground behind its own, effects beside it. For a text scene replaces
 /// background, samples, occlusion and levels of its own.
 ///
-/// Directions: the lights stand still, where the first view has its left and its up. The key light, a point, shines
-/// from the left over the viewer's shoulder; the area light from the right; both from so far away that the ground is
-/// lit evenly. The background has the colour of the lit ground, so that the ground seems to have no end.
+/// Directions: the lights stand still, where the first view has its left and its up. The key light, a small square,
+/// shines from the left over the viewer's shoulder; the area light, a large one, from the right; both from so far away
+/// that the ground is lit evenly. The background has the colour of the lit ground, so that the ground seems to have no
+/// end.
 /// @param view  with eye and at. @param bounds  the mesh's own, or of a series. Precondition: check_look() accepts
 /// request and scene. Errors: Failure (kBadInput) if there are too many materials for a ground, or the lights would be
 /// too far away.
 void apply_look(SceneInput& input, const LookRequest& request, const Camera& view, const LookBounds& bounds);
+
+/// @returns the view with the studio's field of view, 30 degrees, if it is a studio's and leaves eye and field open.
+[[nodiscard]] ViewRequest look_view(const LookRequest& request, ViewRequest view);
 
 /// Throws Failure (kUsage) if a look cannot be had for this kind of scene.
 void check_look(const LookRequest& request, SceneKind kind);

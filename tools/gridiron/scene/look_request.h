@@ -13,8 +13,8 @@ namespace gridiron::tool {
 /// Lights of a look.
 struct LookLights {
   bool head = false;  ///< a point at the first view's eye: its shadows are not seen from there
-  bool key = false;   ///< a point
-  bool area = false;
+  bool key = false;   ///< a small square: its shadows have a soft edge
+  bool area = false;  ///< a large square
 };
 
 /// The parts of a look. Those that are not given have the studio's values with is_studio; else there are a light at the
