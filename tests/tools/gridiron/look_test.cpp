@@ -133,7 +133,7 @@ TEST(Look, PartsCallForTheirEffects) {
     std::uint32_t effects;
   } cases[] = {
       {"studio", {.is_studio = true},
-       kPlain | kAreaLights | kAmbientOcclusion | kSmoothNormals | kMultisampling},
+       kSceneShading | kHighlights | kAreaLights | kAmbientOcclusion | kSmoothNormals | kMultisampling},
       {"background", {.background = Vec3(0)}, kPlain},
       {"color", {.color = Vec3(1, 0, 0)}, kPlain},
       {"ground", {.ground = true}, kPlain},

@@ -25,19 +25,19 @@ constexpr LookLights kStudioLights = {.head = false, .key = true, .area = true};
 constexpr std::uint32_t kStudioSamples = 4, kStudioOcclusion = 16;
 constexpr float kStudioSmoothDegrees = 35.0f;
 constexpr float kStudioFovDegrees = 30.0f;
-constexpr std::uint32_t kKeySamples = 4, kAreaSamples = 2;  // of each sample of a pixel
+constexpr std::uint32_t kKeySamples = 6, kAreaSamples = 2;  // of each sample of a pixel
 
 // Of a mesh without materials: clay with a faint shine.
 const SceneMaterial kPlain = {.color = {0.56f, 0.42f, 0.31f}, .kd = 0.86f, .ks = 0.14f, .shine = 40.0f};
 const Vec3 kGroundColor = {0.42f, 0.43f, 0.44f};  // of the ground
 const Vec3 kHeadColor = Vec3(0.9f);               // alone
 const Vec3 kFillColor = Vec3(0.30f);              // of the head light beside others
-const Vec3 kKeyColor = {1.20f, 1.14f, 1.06f};
-const Vec3 kAreaColor = {0.30f, 0.34f, 0.39f};
+const Vec3 kKeyColor = {1.18f, 1.14f, 1.09f};
+const Vec3 kAreaColor = {0.31f, 0.34f, 0.37f};
 
 // Where the lights stand, seen from the object: degrees from the view to the right and upwards; distance and edge in
 // radii of the object. They are far, so that the ground is lit evenly.
-constexpr double kKeyAzimuth = -48, kKeyElevation = 48, kKeyDistance = 2000, kKeyEdge = 260;
+constexpr double kKeyAzimuth = -48, kKeyElevation = 48, kKeyDistance = 2000, kKeyEdge = 200;
 constexpr double kAreaAzimuth = 70, kAreaElevation = 42, kAreaDistance = 600, kAreaEdge = 420;
 
 // The ground: rings of triangles, small below the object.
