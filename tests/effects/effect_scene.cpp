@@ -204,6 +204,7 @@ SceneDescription colored_ball_scene(std::uint32_t f) {
   SceneDescription scene = empty_scene({0, 2, 6}, {0, 0.8f, 0}, {0, 1, 0}, 40);
   scene.background = {0.02f, 0.05f, 0.3f};
   scene.levels = ColorLevels::kSrgb;
+  scene.samples_per_pixel = 4;  // their mean is put on the curve, not each
   add_point_light(scene, {3, 6, 5}, Vec3(1));
   const std::uint16_t material =
       add_material(scene, {.kd = 0.9f, .ks = 0.1f, .shine = 20, .smooth_normals = true, .vertex_colors = true});

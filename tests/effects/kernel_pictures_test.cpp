@@ -58,7 +58,7 @@ const PictureCase kCases[] = {
     {"glass_ball_flat", [](float) { return glass_ball_scene(false); }, 64, {2, 3e-4, 0.1}},
     {"glass_ball_smooth", [](float) { return glass_ball_scene(true); }, 64, {1, 2e-4, 0.1}},
     // Its colours have 10 bits, and the curve of sRGB makes more of what is dark.
-    {"colored_ball", [](float) { return colored_ball_scene(); }, 64, {0, 0.0, 0.2}},
+    {"colored_ball", [](float) { return colored_ball_scene(); }, 64, {2, 1.2e-4, 0.2}},
     {"acne_point", [](float) { return acne_scene(AcneLight::kPoint, 1, Vec3(0)); }, 64, {}},
     {"acne_area", [](float) { return acne_scene(AcneLight::kArea, 1, Vec3(0)); }, 64, {}},
     {"acne_ambient", [](float) { return acne_scene(AcneLight::kAmbient, 1, Vec3(0)); }, 64, {}},

@@ -173,6 +173,19 @@ class Damages : public ::testing::TestWithParam<Damage> {};
 TEST_P(Damages, AreNamedWithTheirPlace) {
   expect_named(GetParam(), build(all_effects()));
 }
+// A record of normals whose material has no colours.
+TEST(EffectsOfAnImage, ColorsAreThereOnlyWhereTheMaterialHasThem) {
+  TestEffects scene = all_effects(0);
+  for (Material& material : scene.materials) material.vertex_colors = false;
+  scene.triangle_colors.clear();
+  for (const int corner : {0, 2}) {
+    BuiltImage built = build(scene);
+    const std::uint64_t offset = built.view.effects.normals_offset_bytes;
+    edit<NormalRecord>(built.image, offset, [corner](NormalRecord& record) { record.colors[corner] = 1; });
+    expect_refused(built.image, "normal.colors", offset + offsetof(NormalRecord, colors));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Damages, ::testing::ValuesIn(kDamages), [](const auto& test) { return test.param.name; });
 
 // --- Parts that are missing -----------------------------------------------------------------------------------------
