@@ -32,12 +32,12 @@ const SceneMaterial kPlain = {.color = {0.56f, 0.42f, 0.31f}, .kd = 0.86f, .ks =
 const Vec3 kGroundColor = {0.42f, 0.43f, 0.44f};  // of the ground
 const Vec3 kHeadColor = Vec3(0.9f);               // alone
 const Vec3 kFillColor = Vec3(0.30f);              // of the head light beside others
-const Vec3 kKeyColor = {1.18f, 1.14f, 1.09f};
-const Vec3 kAreaColor = {0.31f, 0.34f, 0.37f};
+const Vec3 kKeyColor = {1.25f, 1.21f, 1.16f};
+const Vec3 kAreaColor = {0.25f, 0.27f, 0.30f};
 
 // Where the lights stand, seen from the object: degrees from the view to the right and upwards; distance and edge in
 // radii of the object. They are far, so that the ground is lit evenly.
-constexpr double kKeyAzimuth = -48, kKeyElevation = 48, kKeyDistance = 2000, kKeyEdge = 200;
+constexpr double kKeyAzimuth = -56, kKeyElevation = 50, kKeyDistance = 2000, kKeyEdge = 200;
 constexpr double kAreaAzimuth = 70, kAreaElevation = 42, kAreaDistance = 600, kAreaEdge = 420;
 
 // The ground: rings of triangles, small below the object.
