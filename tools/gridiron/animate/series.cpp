@@ -89,9 +89,10 @@ SceneInput Series::read(SeriesFrame& frame) const {
   const InputHash hash;
   ImportOptions model = request_.scene.model;
   model.moment = frame.moment;
+  model.animation = animate_.clip;
   SceneInput input = read_scene_input(frame.input, request_.scene.tolerance,
                                       PictureRequest{request_.view, camera_, request_.size}, kExpected, model);
-  if (frame.moment && (!input.model || input.model->animation_seconds == 0)) {
+  if (frame.moment && (!input.model || input.model->animations.empty())) {
     input_error(frame.input, "has no animation, which --animation shows");
   }
   require_kind(frame.input, std::holds_alternative<PackedScene>(input.content));
