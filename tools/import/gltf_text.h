@@ -75,7 +75,4 @@ class GltfText {
 /// @returns the words of a member that is a text, else nothing in them.
 [[nodiscard]] std::string words_in(const Json& object, const char* key);
 
-/// "%20" as the byte it stands for.
-[[nodiscard]] std::string without_percents(const std::string& text);
-
 }  // namespace gridiron::tool

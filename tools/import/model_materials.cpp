@@ -291,12 +291,10 @@ std::optional<Texture> ModelMaterials::load_texture(const std::string& name) {
   std::string path = name;
   std::ranges::replace(path, '\\', '/');
   const std::filesystem::path folder = std::filesystem::path(files_.name()).parent_path();
-  for (const std::string& each : {path, without_percents(path)}) {
-    const std::string whole = (folder / each).string();
-    if (!files_.Exists(whole.c_str())) continue;
-    if (const auto bytes = files_.read(whole)) return Texture::decode(*bytes);
-  }
-  return std::nullopt;
+  const std::string whole = (folder / path).string();
+  if (!files_.Exists(whole.c_str())) return std::nullopt;  // a texture has its own words where it is missing
+  const auto bytes = files_.read(whole);
+  return bytes ? Texture::decode(*bytes) : std::nullopt;
 }
 
 }  // namespace gridiron::tool

@@ -101,7 +101,11 @@ TEST(OddModels, Obj) {
       {"points.obj", vertices + "p 1 2 3\n", {}, {}, "point"},
       {"lost.obj", "mtllib lost.mtl\nusemtl red\n" + vertices + "f 1 2 3\n", kOne, {}, "the missing file"},
       {"unknown.obj", "usemtl nowhere\n" + vertices + "f 1 2 3\n", kOne},
-      {"curves.obj", vertices + "vp 0 0\ncstype bezier\ndeg 3\nf 1 2 3\n", kOne},
+      {"returns.obj", "v 0 0 0\rv 1 0 0 # one\r  v 0 1 0\rf 1 2 3\r", kOne},
+      {"blanks_continued.obj", "v 0 0 0\n v 1 \\\n  0 0\nv 0 1 0\n  f 1 2 \\\r\n 3 # x\r\n", kOne},
+      {"hash.obj", "usemtl a#b\n v 0 0 0\nv 1 0 0\nv 0 1 0\ng #1\nf 1 2 3\n", kOne},
+      {"curves.obj", vertices + "vp 0 0\nvp 1 \\\n 1\ncstype bezier\ndeg 3\nparm u 0 1\nlod 1\nend\nf 1 2 3\n", kOne},
+      {"points_first.obj", " v .0 .0 .0#\nv 1 .0 0\nv 0 1 .0\nf 1 2 3\n", kOne},
   };
   for (const Odd& odd : cases) check(odd);
 }

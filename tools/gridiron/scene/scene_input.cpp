@@ -253,7 +253,9 @@ SceneInput read_scene_input(const std::filesystem::path& path, std::optional<flo
       read_model(std::move(file), {.path = path, .ending = ending, .options = model_options}, input);
     } else if (kind == SceneKind::kMesh) {
       input.content = read_ply_mesh(file.bytes, path);
-      input.model = ImportReport{.format = "PLY", .meshes = 1};
+      input.model.emplace();
+      input.model->format = "PLY";
+      input.model->meshes = 1;
     } else if (kind == SceneKind::kPacked) {
       input.content = open_packed_scene(std::move(file), path);
     } else {
