@@ -204,24 +204,23 @@ const Json* GltfText::item(const char* list, std::optional<std::size_t> index) c
 }
 
 std::optional<std::span<const std::byte>> GltfText::buffer(std::size_t index) const {
+  if (const auto found = decoded_.find(index); found != decoded_.end()) return found->second;
   const Json* const buffer = item("buffers", index);
   if (buffer == nullptr) return std::nullopt;
-  const std::string uri = words_in(*buffer, "uri");
-  if (uri.empty()) return index == 0 ? std::optional(chunk_) : std::nullopt;
-  if (uri.starts_with("data:")) {
-    auto found = decoded_.find(index);
-    if (found == decoded_.end()) {
-      constexpr std::string_view kMark = ";base64,";
-      const std::size_t place = uri.find(kMark);
-      if (place == std::string::npos) return std::nullopt;
-      std::optional<std::vector<std::byte>> bytes = decode_base64(std::string_view(uri).substr(place + kMark.size()));
-      if (!bytes) return std::nullopt;
-      found = decoded_.emplace(index, std::move(*bytes)).first;
-    }
-    return std::span<const std::byte>(found->second);
+  const auto member = buffer->find("uri");
+  if (member == buffer->end()) return index == 0 ? std::optional(chunk_) : std::nullopt;
+  if (!member->is_string()) return std::nullopt;
+  const auto& uri = member->get_ref<const std::string&>();
+  if (!uri.starts_with("data:")) {
+    const std::filesystem::path folder = std::filesystem::path(files_->name()).parent_path();
+    return files_->read((folder / uri).string());
   }
-  const std::filesystem::path folder = std::filesystem::path(files_->name()).parent_path();
-  return files_->read((folder / uri).string());
+  constexpr std::string_view kMark = ";base64,";
+  const std::size_t place = uri.find(kMark);
+  if (place == std::string::npos) return std::nullopt;
+  std::optional<std::vector<std::byte>> bytes = decode_base64(std::string_view(uri).substr(place + kMark.size()));
+  if (!bytes) return std::nullopt;
+  return decoded_.emplace(index, std::move(*bytes)).first->second;
 }
 
 std::optional<GltfText::View> GltfText::view(const Json& owner, const char* key) const {

@@ -176,12 +176,14 @@ TEST(OddModels, Stl) {
       {"two_solids.stl", "solid a\n" + facet + "endsolid a\nsolid b\n" + other + "endsolid b\n", two},
       {"no_end.stl", "solid a\n" + facet, kOne},
       {"solid.stl", binary_stl("solid block made by some program", stl_record(kOne)), kOne},
+      {"capital_solid.stl", binary_stl("SOLID BLOCK", stl_record({0, 0, 0, 12, 0, 0, 0, 1, 0})),
+       {0, 0, 0, 12, 0, 0, 0, 1, 0}},
       {"attributes.stl", binary_stl("x", stl_record(kOne, 0x8FFF)), kOne},
       {"colors.stl", binary_stl("COLOR=\x10\x20\x30\xFF,MATERIAL=", stl_record(kOne, 0x0010)), kOne},
       {"longer.stl", binary_stl("x", stl_record(kOne)) + "and more", kOne},
   };
   for (const Odd& odd : cases) check(odd);
-  EXPECT_TRUE(model_of("colors.stl", cases[6].content).mesh.surface.is_empty()) << "colours of attributes are not kept";
+  EXPECT_TRUE(model_of("colors.stl", cases[7].content).mesh.surface.is_empty()) << "colours of attributes are not kept";
 }
 
 TEST(OddModels, StlInCapitals) {
@@ -317,6 +319,29 @@ TEST(OddModels, Collada) {
   const ImportedModel model = model_of("a.dae", collada(inches, quad));
   EXPECT_EQ(model.mesh.triangles.size(), 2u);
   EXPECT_EQ(tool::words_of_frame(model.report), "in metres, y up");
+}
+
+// Units and axes are reported and nothing is converted.
+TEST(OddModels, Fbx) {
+  const auto file = [](const std::string& axis, const std::string& sign, const std::string& unit) {
+    return "; FBX 7.3.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7300\n}\n"
+           "GlobalSettings:  {\n\tVersion: 1000\n\tProperties70:  {\n\t\tP: \"UpAxis\", \"int\", \"Integer\", \"\"," + axis +
+           "\n\t\tP: \"UpAxisSign\", \"int\", \"Integer\", \"\"," + sign +
+           "\n\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\"," + unit + "\n\t}\n}\nDefinitions:  {\n\tVersion: 100\n"
+           "\tCount: 2\n}\nObjects:  {\n\tGeometry: 1001, \"Geometry::g\", \"Mesh\" {\n\t\tVertices: *9 {\n\t\t\ta: "
+           "0,0,0,1,0,0,0,1,0\n\t\t}\n\t\tPolygonVertexIndex: *3 {\n\t\t\ta: 0,1,-3\n\t\t}\n\t\tGeometryVersion: 124\n\t}\n"
+           "\tModel: 1002, \"Model::m\", \"Mesh\" {\n\t\tVersion: 232\n\t\tProperties70:  {\n\t\t\tP: \"Lcl Translation\", "
+           "\"Lcl Translation\", \"\", \"A\",5,0,0\n\t\t}\n\t}\n}\nConnections:  {\n\tC: \"OO\",1002,0\n"
+           "\tC: \"OO\",1001,1002\n}\n";
+  };
+  check({"inches.fbx", file("2", "1", "2.54"), {5, 0, 0, 6, 0, 0, 5, 1, 0}});
+  const auto frame = [&](const std::string& axis, const std::string& sign, const std::string& unit) {
+    return tool::words_of_frame(model_of("a.fbx", file(axis, sign, unit)).report);
+  };
+  EXPECT_EQ(frame("2", "1", "2.54"), "in inches, z up");
+  EXPECT_EQ(frame("1", "-1", "1"), "in centimetres, -y up");
+  EXPECT_EQ(frame("0", "1", "100"), "in metres, x up");
+  EXPECT_EQ(frame("1", "1", "7"), "in units of 0.07 m, y up");
 }
 
 // This program's own reader and Assimp's agree.
