@@ -86,8 +86,8 @@ std::vector<NodeMatrix> skin_of(const aiMesh& mesh, const NodePose& pose, const 
 }
 
 // A mesh as its morph targets leave it: its own vectors, and the way to each target's by its weight.
-std::vector<aiVector3D> morphed(const aiMesh& mesh, const std::vector<float>& weights,
-                                const aiVector3D* own, aiVector3D* aiAnimMesh::*of_target) {
+std::vector<aiVector3D> morphed(const aiMesh& mesh, const std::vector<float>& weights, const aiVector3D* own,
+                                aiVector3D* aiAnimMesh::*of_target) {
   std::vector<aiVector3D> vectors(own, own + mesh.mNumVertices);
   for (unsigned i = 0; i < mesh.mNumAnimMeshes; ++i) {
     const aiAnimMesh& target = *mesh.mAnimMeshes[i];
@@ -314,8 +314,8 @@ void MeshJoiner::tell(std::vector<std::string>& ignored) const {
   if (lines_ != 0) ignored.push_back(words_of_count(lines_, "line"));
   if (polygons_ != 0) ignored.push_back(words_of_count(polygons_, "polygon") + " that cannot be cut into triangles");
   if (placeless_ != 0) {
-    ignored.push_back("the texture of " + words_of_count(placeless_) +
-                      (placeless_ == 1 ? " mesh" : " meshes") + " without texture coordinates");
+    ignored.push_back("the texture of " + words_of_count(placeless_) + (placeless_ == 1 ? " mesh" : " meshes") +
+                      " without texture coordinates");
   }
 }
 
@@ -445,7 +445,7 @@ ImportedModel read_with_assimp(std::span<const std::byte> bytes, const ChildSett
   const ModelFormat format = format_of_ending(settings.ending);
   std::optional<GltfText> text;
   if (format == ModelFormat::kGltf) text = GltfText::parse(bytes, files);
-  if (text) text->require_known_extensions();
+  if (text) text->require_readable();
   if (importer.ReadFile(files.name(), aiProcess_Triangulate) == nullptr) {
     const std::string words = importer.GetErrorString();
     if (is_shortage(words)) throw std::bad_alloc();

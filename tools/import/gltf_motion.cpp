@@ -173,9 +173,10 @@ Movement GltfMotion::movement_at(double seconds) const {
     };
     if (values.contains("translation") || values.contains("rotation") || values.contains("scale")) {
       const Json& own = *scene_.text().item("nodes", index);
-      movement.parent_from_node.emplace(node, matrix_of(value_of("translation", numbers_or(own, "translation", {0, 0, 0})),
-                                                        value_of("rotation", numbers_or(own, "rotation", {0, 0, 0, 1})),
-                                                        value_of("scale", numbers_or(own, "scale", {1, 1, 1}))));
+      movement.parent_from_node.emplace(node,
+                                        matrix_of(value_of("translation", numbers_or(own, "translation", {0, 0, 0})),
+                                                  value_of("rotation", numbers_or(own, "rotation", {0, 0, 0, 1})),
+                                                  value_of("scale", numbers_or(own, "scale", {1, 1, 1}))));
     }
     std::vector<float> weights = scene_.rest_weights(index);
     if (const auto place = values.find("weights"); place != values.end()) {

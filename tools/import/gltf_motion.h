@@ -20,7 +20,8 @@ class GltfSampler {
   [[nodiscard]] static std::optional<GltfSampler> read(const GltfText& text, const Json& sampler, unsigned components,
                                                        std::size_t width);
 
-  /// @returns the values at a moment; quaternions on the shortest arc, of length 1. @param seconds  on the file's clock.
+  /// @returns the values at a moment; quaternions on the shortest arc, of length 1. @param seconds  on the file's
+  /// clock.
   [[nodiscard]] std::vector<double> at(double seconds, bool is_rotation) const;
   [[nodiscard]] double last_second() const { return static_cast<double>(times_.back()); }
 

@@ -28,7 +28,8 @@ std::optional<std::vector<float>> misread_numbers(const GltfText& text, const Js
   const std::optional<std::size_t> accessor = index_in(attributes, name.c_str());
   if (!text.is_misread(accessor)) return std::nullopt;
   std::optional<std::vector<float>> numbers = text.numbers(accessor, components);
-  if (!numbers || numbers->size() != components * vertices) throw ImportError("the accessor of a " + name + " is damaged");
+  if (!numbers || numbers->size() != components * vertices)
+    throw ImportError("the accessor of a " + name + " is damaged");
   return numbers;
 }
 
@@ -133,8 +134,8 @@ void GltfScene::match_nodes() {
     const auto [node, index] = waiting.back();
     waiting.pop_back();
     const Json* const own = text_.item("nodes", index);
-    is_alike = node != nullptr && own != nullptr &&
-               match(node->mChildren, node->mNumChildren, indices_in(*own, "children"));
+    is_alike =
+        node != nullptr && own != nullptr && match(node->mChildren, node->mNumChildren, indices_in(*own, "children"));
     if (!is_alike) break;
     nodes_.emplace_back(node, index);
     first_nodes_.emplace(index, node);

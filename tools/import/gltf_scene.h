@@ -1,6 +1,5 @@
-// glTF scene: which parts of a file's text the nodes, meshes and materials of an Assimp scene come from; puts right what
-// Assimp has read wrongly there.
-// Memory: borrows text and scene. Threads: one. SPDX-License-Identifier: Apache-2.0
+// glTF scene: which parts of a file's text the nodes, meshes and materials of an Assimp scene come from; puts right
+// what Assimp has read wrongly there. Memory: borrows text and scene. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <assimp/scene.h>

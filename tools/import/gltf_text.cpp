@@ -37,12 +37,18 @@ float component_at(const std::byte* place, int type, bool is_share) {
     return static_cast<float>(is_share ? std::max(value / most, -1.0) : value);
   };
   switch (type) {
-    case kByte: return integer(value_at<std::int8_t>(place), 127);
-    case kUnsignedByte: return integer(value_at<std::uint8_t>(place), 255);
-    case kShort: return integer(value_at<std::int16_t>(place), 32767);
-    case kUnsignedShort: return integer(value_at<std::uint16_t>(place), 65535);
-    case kUnsignedInt: return integer(value_at<std::uint32_t>(place), 4294967295.0);
-    default: return value_at<float>(place);
+    case kByte:
+      return integer(value_at<std::int8_t>(place), 127);
+    case kUnsignedByte:
+      return integer(value_at<std::uint8_t>(place), 255);
+    case kShort:
+      return integer(value_at<std::int16_t>(place), 32767);
+    case kUnsignedShort:
+      return integer(value_at<std::uint16_t>(place), 65535);
+    case kUnsignedInt:
+      return integer(value_at<std::uint32_t>(place), 4294967295.0);
+    default:
+      return value_at<float>(place);
   }
 }
 
@@ -96,7 +102,8 @@ std::optional<std::vector<std::byte>> decode_base64(std::string_view text) {
 }
 
 // The chunks of a binary file: its JSON, and the bytes of buffer 0.
-bool find_chunks(std::span<const std::byte> file, std::span<const std::byte>& json, std::span<const std::byte>& buffer) {
+bool find_chunks(std::span<const std::byte> file, std::span<const std::byte>& json,
+                 std::span<const std::byte>& buffer) {
   constexpr std::size_t kHeadBytes = 12, kChunkHeadBytes = 8;
   constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBufferChunk = 0x004E4942;
   std::size_t place = kHeadBytes;
@@ -296,10 +303,19 @@ bool GltfText::is_misread(std::optional<std::size_t> index) const {
   return accessor != nullptr && (type_in(*accessor) != kFloat || accessor->contains("sparse"));
 }
 
-void GltfText::require_known_extensions() const {
+void GltfText::require_readable() const {
   for (const std::string& name : names_in(root_, "extensionsRequired")) {
     const bool is_look = std::ranges::any_of(kLookPrefixes, [&](std::string_view p) { return name.starts_with(p); });
-    if (!is_look && !is_read(name)) throw ImportError("requires the glTF extension " + in_quotes(name) + ", which is not read");
+    if (!is_look && !is_read(name)) {
+      throw ImportError("requires the glTF extension " + in_quotes(name) + ", which is not read");
+    }
+  }
+  const Json* const skins = member(&root_, "skins");
+  if (skins == nullptr) return;
+  for (const Json& skin : *skins) {
+    if (skin.is_object() && !skin.contains("inverseBindMatrices")) {
+      throw ImportError("has a skin without inverseBindMatrices, which Assimp cannot read");
+    }
   }
 }
 

@@ -40,8 +40,9 @@ class GltfText {
   /// coordinates, or sparse elements in an interleaved buffer.
   [[nodiscard]] bool is_misread(std::optional<std::size_t> accessor) const;
 
-  /// Throws ImportError if the file requires an extension without which its triangles would be others.
-  void require_known_extensions() const;
+  /// Throws ImportError if the file requires an extension without which its triangles would be others, or has a skin
+  /// that crashes Assimp.
+  void require_readable() const;
 
   /// @returns extensions that the file uses and that make no difference here.
   [[nodiscard]] std::vector<std::string> unused_extensions() const;
@@ -60,7 +61,7 @@ class GltfText {
 
   AssimpFiles* files_;
   Json root_;
-  std::span<const std::byte> chunk_;                              // of a binary file, buffer 0
+  std::span<const std::byte> chunk_;                               // of a binary file, buffer 0
   mutable std::map<std::size_t, std::vector<std::byte>> decoded_;  // of data URIs
 };
 

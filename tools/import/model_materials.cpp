@@ -32,8 +32,9 @@ float index_of(float value) {
 constexpr float kDielectric = 0.04f;  // share that what is no metal reflects
 
 // A share that is reflected and a roughness as a mirror's share and the exponent of a highlight. A rough surface has no
-// clear mirror image, so its share fades with the roughness. Source of the exponent: B. Walter et al., "Microfacet Models for Refraction
-// through Rough Surfaces", 2007, equation 38 and below: 2 / alpha^2 - 2; glTF's alpha is the roughness squared.
+// clear mirror image, so its share fades with the roughness. Source of the exponent: B. Walter et al., "Microfacet
+// Models for Refraction through Rough Surfaces", 2007, equation 38 and below: 2 / alpha^2 - 2; glTF's alpha is the
+// roughness squared.
 void set_mirror(float reflected, float roughness, SceneMaterial& material) {
   constexpr float kLeastShare = 0.01f, kMostExponent = 1e4f;
   const float clear = (1.0f - roughness) * (1.0f - roughness);
@@ -241,8 +242,8 @@ void ModelMaterials::read_texture(const aiMaterial& source, unsigned index, Mode
 }
 
 // Scale, then rotation, then offset, of places that count downwards.
-// Source: KHR_texture_transform; a rotation is counter-clockwise as one sees the picture, so its sine has the other sign
-// for places that count downwards.
+// Source: KHR_texture_transform; a rotation is counter-clockwise as one sees the picture, so its sine has the other
+// sign for places that count downwards.
 void ModelMaterials::read_gltf_places(const Json& texture, ModelMaterial& result) const {
   const Json* const transform = member(member(&texture, "extensions"), "KHR_texture_transform");
   if (transform == nullptr) return;

@@ -17,8 +17,8 @@ std::vector<std::byte> bytes_of(std::string_view text) {
 // Whether a line holds numbers alone, in which # can be nothing but a comment.
 bool has_numbers(std::string_view line) {
   const std::string_view word = line.substr(0, line.find_first_of(" \t"));
-  constexpr std::string_view kWords[] = {"v", "vt", "vn", "f", "l", "p", "Kd", "Ks", "Ka", "Ke", "Ns", "Ni", "d", "Tr",
-                                         "illum"};
+  constexpr std::string_view kWords[] = {"v",  "vt", "vn", "f",  "l", "p",  "Kd",   "Ks",
+                                         "Ka", "Ke", "Ns", "Ni", "d", "Tr", "illum"};
   return std::ranges::find(kWords, word) != std::end(kWords);
 }
 

@@ -1,5 +1,5 @@
-// Model text: bytes of OBJ, MTL and STL files as Assimp can read them, where it refuses or skips what their formats allow.
-// Memory: owns what it returns. Threads: any. SPDX-License-Identifier: Apache-2.0
+// Model text: bytes of OBJ, MTL and STL files as Assimp can read them, where it refuses or skips what their formats
+// allow. Memory: owns what it returns. Threads: any. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>

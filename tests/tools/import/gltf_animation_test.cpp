@@ -24,8 +24,9 @@ class Moving {
   }
   [[nodiscard]] static std::string animation(const std::string& samplers, const std::string& path = "translation",
                                              const std::string& name = "", int node = 0) {
-    return "{" + (name.empty() ? "" : "\"name\":\"" + name + "\",") + "\"channels\":[{\"sampler\":0,\"target\":{\"node\":" +
-           std::to_string(node) + ",\"path\":\"" + path + "\"}}],\"samplers\":[" + samplers + "]}";
+    return "{" + (name.empty() ? "" : "\"name\":\"" + name + "\",") +
+           "\"channels\":[{\"sampler\":0,\"target\":{\"node\":" + std::to_string(node) + ",\"path\":\"" + path +
+           "\"}}],\"samplers\":[" + samplers + "]}";
   }
   [[nodiscard]] std::string text(const std::string& animations, const std::string& node = "\"mesh\":0",
                                  const std::string& primitive = "", const std::string& mesh = "") const {
@@ -51,11 +52,14 @@ TEST(GltfAnimation, CurvesAreThoseOfTheFile) {
   const std::string step = steps.text(Moving::animation(steps.sampler(times, points, "STEP")));
   Moving lines;
   const std::string line = lines.text(Moving::animation(lines.sampler(times, points, "")));
-  const struct { double second; Vec3 of_step, of_line; } cases[] = {{0.0, {0, 0, 0}, {0, 0, 0}},
-                                                                    {1.5, {0, 0, 0}, {1, 0, 0}},
-                                                                    {2.0, {2, 0, 0}, {2, 0, 0}},
-                                                                    {3.0, {2, 0, 0}, {2, 2, 0}},
-                                                                    {4.0, {2, 4, 0}, {2, 4, 0}}};
+  const struct {
+    double second;
+    Vec3 of_step, of_line;
+  } cases[] = {{0.0, {0, 0, 0}, {0, 0, 0}},
+               {1.5, {0, 0, 0}, {1, 0, 0}},
+               {2.0, {2, 0, 0}, {2, 0, 0}},
+               {3.0, {2, 0, 0}, {2, 2, 0}},
+               {4.0, {2, 4, 0}, {2, 4, 0}}};
   for (const auto& each : cases) {
     SCOPED_TRACE(each.second);
     expect_corner(at(step, each.second / 4).mesh, 0, 0, each.of_step);
@@ -167,12 +171,14 @@ TEST(GltfAnimation, SkinsFollowTheirJoints) {
   const std::vector<float> units = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
                                     1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   const std::size_t binds = moving.writer.add(units, kGltfFloat, "MAT4", 2);
-  const std::string nodes = "\"children\":[1,2,3]},{\"mesh\":0,\"skin\":0,\"translation\":[50,0,0]},{\"name\":\"j\"},"
-                            "{\"name\":\"j\",\"translation\":[0,0,10]";
+  const std::string nodes =
+      "\"children\":[1,2,3]},{\"mesh\":0,\"skin\":0,\"translation\":[50,0,0]},{\"name\":\"j\"},"
+      "{\"name\":\"j\",\"translation\":[0,0,10]";
   const std::string text = moving.writer.text(
-      "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{" + nodes + "}],\"skins\":[{\"joints\":[2,3],\"inverseBindMatrices\":" +
-      std::to_string(binds) + "}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":" +
-      std::to_string(joint_list) + ",\"WEIGHTS_0\":" + std::to_string(weight_list) + "}}]}]");
+      "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{" + nodes +
+      "}],\"skins\":[{\"joints\":[2,3],\"inverseBindMatrices\":" + std::to_string(binds) +
+      "}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":" + std::to_string(joint_list) +
+      ",\"WEIGHTS_0\":" + std::to_string(weight_list) + "}}]}]");
   const tool::Mesh mesh = model_of("a.gltf", text).mesh;
   // The place of a skinned mesh's own node makes no difference.
   expect_corner(mesh, 0, 0, Vec3(0, 0, 10.0f * 128 / 255));

@@ -12,12 +12,15 @@ using tool::ImportedModel;
 
 constexpr const char* kScene = "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}]";
 
-// A triangle whose corners lie at the given places of a picture with 4 x 4 texels. Columns differ in red, rows in green.
+// A triangle whose corners lie at the given places of a picture with 4 x 4 texels. Columns differ in red, rows in
+// green.
 struct Textured {
   GltfWriter writer;
   std::string attributes;
 
-  Textured() { attributes = "\"POSITION\":" + std::to_string(writer.add_floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3)); }
+  Textured() {
+    attributes = "\"POSITION\":" + std::to_string(writer.add_floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3));
+  }
 
   void add_places(const std::vector<float>& places, int set) {
     attributes += ",\"TEXCOORD_" + std::to_string(set) + "\":" + std::to_string(writer.add_floats(places, "VEC2", 2));
@@ -116,10 +119,10 @@ TEST(GltfTextures, PlacesAreTransformed) {
 TEST(GltfTextures, FactorsTexturesAndColoursAreMultiplied) {
   Textured file;
   file.add_places(thrice(middle(3), middle(3)), 0);
-  const std::vector<std::uint16_t> colors = {65535, 32768, 65535, 65535, 65535, 65535, 65535, 65535,
-                                             0,     65535, 65535, 65535};
-  file.attributes += ",\"COLOR_0\":" + std::to_string(file.writer.add(colors, kGltfUnsignedShort, "VEC4", 3,
-                                                                      ",\"normalized\":true"));
+  const std::vector<std::uint16_t> colors = {65535, 32768, 65535, 65535, 65535, 65535,
+                                             65535, 65535, 0,     65535, 65535, 65535};
+  file.attributes +=
+      ",\"COLOR_0\":" + std::to_string(file.writer.add(colors, kGltfUnsignedShort, "VEC4", 3, ",\"normalized\":true"));
   const ImportedModel model = file.model("", "", "", "\"baseColorFactor\":[0.5,1,1,1],");
   const float light = tool::linear_of_srgb(240.0f / 255);
   expect_color(model.mesh, 0, 0, Vec3(0.5f * light, 0.5f * light, 0));
@@ -131,8 +134,8 @@ TEST(GltfTextures, FactorsTexturesAndColoursAreMultiplied) {
 TEST(GltfTextures, PlacesMayBeIntegers) {
   Textured file;
   const std::vector<std::uint16_t> places = {40959, 8192, 40959, 8192, 40959, 8192};  // 0.625, 0.125
-  file.attributes += ",\"TEXCOORD_0\":" + std::to_string(file.writer.add(places, kGltfUnsignedShort, "VEC2", 3,
-                                                                         ",\"normalized\":true"));
+  file.attributes += ",\"TEXCOORD_0\":" +
+                     std::to_string(file.writer.add(places, kGltfUnsignedShort, "VEC2", 3, ",\"normalized\":true"));
   expect_color(file.model("").mesh, 0, 0, texel(2, 0));
 }
 
@@ -147,7 +150,8 @@ TEST(Gltf, CoordinatesMayBeIntegers) {
   const std::string text = writer.text(
       "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[0.01,0.01,0.01]}],\"extensionsUsed\":["
       "\"KHR_mesh_quantization\"],\"extensionsRequired\":[\"KHR_mesh_quantization\"],\"meshes\":[{\"primitives\":[{"
-      "\"attributes\":{\"POSITION\":" + std::to_string(position) + ",\"NORMAL\":" + std::to_string(normal) + "}}]}]");
+      "\"attributes\":{\"POSITION\":" +
+      std::to_string(position) + ",\"NORMAL\":" + std::to_string(normal) + "}}]}]");
   const ImportedModel model = model_of("a.gltf", text);
   EXPECT_TRUE(model.report.ignored.empty());
   expect_corner(model.mesh, 0, 0, Vec3(0, 0, 0));
@@ -172,8 +176,9 @@ TEST(Gltf, NumbersMayBeInterleavedAndSparse) {
       ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":" + std::to_string(index_view) +
           ",\"componentType\":5123},\"values\":{\"bufferView\":" + std::to_string(value_view) + "}}");
   const std::size_t normal = writer.add_accessor(view, kGltfFloat, "VEC3", 3, ",\"byteOffset\":12");
-  const std::string text = writer.text(std::string(kScene) + ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"NORMAL\":" +
-                                       std::to_string(normal) + ",\"POSITION\":" + std::to_string(position) + "}}]}]");
+  const std::string text = writer.text(
+      std::string(kScene) + ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"NORMAL\":" + std::to_string(normal) +
+      ",\"POSITION\":" + std::to_string(position) + "}}]}]");
   const ImportedModel model = model_of("a.gltf", text);
   expect_corner(model.mesh, 0, 0, Vec3(0, 0, 0));
   expect_corner(model.mesh, 0, 1, Vec3(5, 0, 0));
@@ -191,7 +196,8 @@ std::string with_extensions(const std::string& used, const std::string& required
 
 TEST(Gltf, ExtensionsThatMakeNoDifferenceAreReported) {
   const ImportedModel model = model_of(
-      "a.gltf", with_extensions("\"KHR_materials_sheen\",\"KHR_materials_ior\",\"VENDOR_x\"", "\"KHR_materials_sheen\""));
+      "a.gltf",
+      with_extensions("\"KHR_materials_sheen\",\"KHR_materials_ior\",\"VENDOR_x\"", "\"KHR_materials_sheen\""));
   EXPECT_EQ(model.mesh.triangles.size(), 1u);
   EXPECT_TRUE(ignores(model, "the extensions 'KHR_materials_sheen' and 'VENDOR_x'"))
       << testing::PrintToString(model.report.ignored);
@@ -203,6 +209,16 @@ TEST(Gltf, ExtensionsThatAreRequiredMustBeKnown) {
   EXPECT_NE(reason.find("a.gltf: requires the glTF extension 'EXT_meshopt_compression', which is not read"),
             std::string::npos)
       << reason;
+}
+
+TEST(Gltf, SkinsWithoutMatricesAreRefused) {
+  GltfWriter writer;
+  (void)writer.add_floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  const std::string text = writer.text(
+      "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[0]}],\"meshes\":[{"
+      "\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]");
+  const std::string reason = reason_of("a.gltf", text);
+  EXPECT_NE(reason.find("a.gltf: has a skin without inverseBindMatrices"), std::string::npos) << reason;
 }
 
 TEST(Gltf, WhatMaterialsLoseIsReported) {
@@ -225,7 +241,8 @@ TEST(Gltf, ColoursOfSpecularGlossinessAreUsed) {
   (void)writer.add_floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
   const std::string text = writer.text(
       std::string(kScene) +
-      ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}],\"materials\":[{\"extensions\":{"
+      ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}],\"materials\":[{"
+      "\"extensions\":{"
       "\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.25,0.5,0.75,1],\"specularFactor\":[0.8,0.8,0.8],"
       "\"glossinessFactor\":1}}}],\"extensionsUsed\":[\"KHR_materials_pbrSpecularGlossiness\"]");
   const ImportedModel model = model_of("a.gltf", text);

@@ -51,9 +51,11 @@ TEST(GltfText, AccessorsOfAllKindsAreRead) {
   for (const std::string& file : {writer.text("\"x\":0"), writer.binary("\"x\":0")}) {
     const Parsed parsed(file);
     ASSERT_TRUE(parsed.text.has_value());
-    const struct { unsigned components; Numbers expected; } cases[] = {
-        {4, {1, -1, -1, 0}}, {1, {1, 0.2f, 0}},  {2, {1, -1}}, {1, {7, 65535}},       {1, {4000000000.0f}},
-        {3, {1.5f, -2, 3}},  {3, {0, 0, 0, 9, 8, 7}}, {1, {1, 2, 3}}, {1, {9, 9}}};
+    const struct {
+      unsigned components;
+      Numbers expected;
+    } cases[] = {{4, {1, -1, -1, 0}}, {1, {1, 0.2f, 0}},       {2, {1, -1}},   {1, {7, 65535}}, {1, {4000000000.0f}},
+                 {3, {1.5f, -2, 3}},  {3, {0, 0, 0, 9, 8, 7}}, {1, {1, 2, 3}}, {1, {9, 9}}};
     for (std::size_t i = 0; i < std::size(cases); ++i) {
       SCOPED_TRACE(i);
       const auto got = parsed.text->numbers(i, cases[i].components);

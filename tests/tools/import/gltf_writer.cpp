@@ -10,17 +10,17 @@ namespace gridiron::test {
 
 std::size_t GltfWriter::add_view(const void* bytes, std::size_t size, const std::string& members) {
   while (buffer_.size() % 4 != 0) buffer_ += '\0';
-  views_ += (views_.empty() ? "" : ",") + std::string("{\"buffer\":0,\"byteOffset\":") + std::to_string(buffer_.size()) +
-            ",\"byteLength\":" + std::to_string(size) + members + "}";
+  views_ += (views_.empty() ? "" : ",") + std::string("{\"buffer\":0,\"byteOffset\":") +
+            std::to_string(buffer_.size()) + ",\"byteLength\":" + std::to_string(size) + members + "}";
   buffer_.append(static_cast<const char*>(bytes), size);
   return view_count_++;
 }
 
 std::size_t GltfWriter::add_accessor(const std::string& begin, int component, const std::string& type,
                                      std::size_t count, const std::string& members) {
-  accessors_ += (accessors_.empty() ? "" : ",") + std::string("{") + begin + "\"componentType\":" +
-                std::to_string(component) + ",\"count\":" + std::to_string(count) + ",\"type\":\"" + type + "\"" +
-                members + "}";
+  accessors_ += (accessors_.empty() ? "" : ",") + std::string("{") + begin +
+                "\"componentType\":" + std::to_string(component) + ",\"count\":" + std::to_string(count) +
+                ",\"type\":\"" + type + "\"" + members + "}";
   return accessor_count_++;
 }
 

@@ -35,9 +35,9 @@ TEST(ImportProgram, PicturesAreThoseOfThePly) {
 TEST(ImportProgram, CommandsTellWhatWasRead) {
   const TestMesh box = make_box({0, 0, 0}, {1, 1, 1});
   const TemporaryFolder folder("a.obj", obj_text(box) + "l 1 2\n");
-  for (const Words& command : {Words{"render", "a.obj", "-o", "a.png", "--size", "8x8"},
-                               Words{"pack", "a.obj", "-o", "a.gri"},
-                               Words{"job", "a.obj", "-o", "a.job", "--base", "0x80000000", "--size", "8x8"}}) {
+  for (const Words& command :
+       {Words{"render", "a.obj", "-o", "a.png", "--size", "8x8"}, Words{"pack", "a.obj", "-o", "a.gri"},
+        Words{"job", "a.obj", "-o", "a.job", "--base", "0x80000000", "--size", "8x8"}}) {
     const ProgramResult result = run(folder, command);
     EXPECT_NE(result.err.find("a.obj: OBJ, 1 mesh, 12 triangles; read with Assimp"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("a.obj: ignored: 1 line\n"), std::string::npos) << result.err;
@@ -70,17 +70,18 @@ TEST(ImportProgram, AnimateShowsTheAnimationThatIsNamed) {
   (void)writer.add_floats({0, 0, 0, 1, 0, 0}, "VEC3", 3);
   (void)writer.add_floats({0, 0, 0, -1, 0, 0}, "VEC3", 3);
   const auto animation = [](const std::string& name, int output) {
-    return "{\"name\":\"" + name + "\",\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"translation\"}}]," +
+    return "{\"name\":\"" + name +
+           "\",\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"translation\"}}]," +
            "\"samplers\":[{\"input\":1,\"output\":" + std::to_string(output) + "}]}";
   };
   const TemporaryFolder folder(
       "a.gltf", writer.text("\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{"
-                            "\"attributes\":{\"POSITION\":0}}]}],\"animations\":[" + animation("right", 2) + "," +
-                            animation("left", 3) + "]"));
+                            "\"attributes\":{\"POSITION\":0}}]}],\"animations\":[" +
+                            animation("right", 2) + "," + animation("left", 3) + "]"));
   const auto last_picture = [&](const Words& clip) {
-    const ProgramResult result =
-        run(folder, Words{"animate", "a.gltf", "-o", "out", "--animation", "2", "--size", "32x16", "--eye", "0,0,4", "--at",
-                          "0,0,0"} + clip);
+    const ProgramResult result = run(folder, Words{"animate", "a.gltf", "-o", "out", "--animation", "2", "--size",
+                                                   "32x16", "--eye", "0,0,4", "--at", "0,0,0"} +
+                                                 clip);
     EXPECT_NE(result.err.find("a.gltf: ignored: 1 animation\n"), std::string::npos) << result.err;
     return read_file(folder.path("out/frame0001.png"));
   };
@@ -102,15 +103,17 @@ TEST(ImportProgram, AnimateShowsTheAnimationThatIsNamed) {
 TEST(ImportProgram, InfoTellsWhatAMeshHolds) {
   using Json = nlohmann::json;
   const TestMesh box = make_box({0, 0, 0}, {1, 1, 1});
-  const TemporaryFolder folder("a.ply",
-                               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
-                               "z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty "
-                               "uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\n"
-                               "end_header\n0 0 0 0 0 1 255 0 0\n1 0 0 0 0 1 0 255 0\n0 1 0 0 0 1 0 0 255\n3 0 1 2\n");
+  const TemporaryFolder folder(
+      "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+      "z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty "
+      "uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "end_header\n0 0 0 0 0 1 255 0 0\n1 0 0 0 0 1 0 255 0\n0 1 0 0 0 1 0 0 255\n3 0 1 2\n");
   folder.write_ply("plain.ply", box);
   folder.write("a.gltf", gltf_text(box, {.material = "\"name\":\"one\"", .more = ",\"cameras\":[]"}));
-  folder.write("scene.nff", "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 8 8\nl 5 5 5\nf 1 1 1 1 0 0 0 "
-                            "0\np 3\n0 0 0\n1 0 0\n0 1 0\n");
+  folder.write("scene.nff",
+               "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 8 8\nl 5 5 5\nf 1 1 1 1 0 0 0 "
+               "0\np 3\n0 0 0\n1 0 0\n0 1 0\n");
   const auto model = [&](const std::string& name) {
     const ProgramResult result = run(folder, {"info", name, "--json"});
     return Json::parse(result.out, nullptr, false)["model"];

@@ -21,7 +21,7 @@ struct Odd {
   std::string name, content;
   std::vector<float> triangles;  ///< nine numbers each, in any order, from any corner on
   std::vector<File> beside{};
-  std::string ignored{};         ///< words that must be reported
+  std::string ignored{};  ///< words that must be reported
 };
 
 // From its least corner on, so that only the winding counts.
@@ -85,7 +85,8 @@ TEST(OddModels, Obj) {
       {"negative.obj", vertices + "f -3 -2 -1\n", kOne},
       {"negative_later.obj", "v 9 9 9\n" + vertices + "f -3 -2 -1\nv 7 7 7\nv 8 8 8\n", kOne},
       {"negative_parts.obj", vertices + "vt 0 0\nvn 0 0 1\nf -3/-1/-1 -2/-1/-1 -1/-1/-1\n", kOne},
-      {"parts.obj", vertices + "vt 0 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 1/1 2/1 3/1\n",
+      {"parts.obj",
+       vertices + "vt 0 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 1/1 2/1 3/1\n",
        {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0}},
       {"continued.obj", "v 0 \\\n0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n2 3\n", kOne},
       {"crlf.obj", "# x\r\nv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\n\r\nf 1 2 3\r\n", kOne},
@@ -94,7 +95,8 @@ TEST(OddModels, Obj) {
       {"numbers.obj", "v 0.0e0 -0 +0\nv 1.E0 .0 0.\nv 0 10e-1 0\nf 1 2 3\n", kOne},
       {"weight.obj", "v 0 0 0 1\nv 1 0 0 1.0\nv 0 1 0 1\nf 1 2 3\n", kOne},
       {"no_end.obj", vertices + "f 1 2 3", kOne},
-      {"groups.obj", vertices + "o first thing\ng a b\ns 1\nf 1 2 3\no second\ns off\nv 5 0 0\nf 1 4 3\n",
+      {"groups.obj",
+       vertices + "o first thing\ng a b\ns 1\nf 1 2 3\no second\ns off\nv 5 0 0\nf 1 4 3\n",
        {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 5, 0, 0, 0, 1, 0}},
       {"twice.obj", vertices + "f 1 2 3\nf 1 1 2\n", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0}},
       {"lines.obj", vertices + "l 1 2 3\np 1\n", {}, {}, "2 lines"},
@@ -113,8 +115,9 @@ TEST(OddModels, Obj) {
 TEST(OddModels, ObjMaterialsHaveNamesWithSpaces) {
   const TemporaryFolder folder("a.obj", "mtllib my materials.mtl\n" + std::string(kVertices) +
                                             "usemtl dark red\nf 1 2 3\nusemtl dark blue\nf 1 3 2\n");
-  folder.write("my materials.mtl", "\tnewmtl dark red\r\n  Kd 0.5 0 0\r\nTr 0.25\r\n\r\nnewmtl dark blue\r\nKd 0 0 0.5\r\n"
-                                   "d 0.5\r\nillum 10\r\nKs 1 1 1\r\n");
+  folder.write("my materials.mtl",
+               "\tnewmtl dark red\r\n  Kd 0.5 0 0\r\nTr 0.25\r\n\r\nnewmtl dark blue\r\nKd 0 0 0.5\r\n"
+               "d 0.5\r\nillum 10\r\nKs 1 1 1\r\n");
   const ImportedModel model = import_file(folder.path("a.obj"));
   const auto material = [&](std::size_t triangle) {
     return model.mesh.surface.materials.at(model.mesh.surface.triangle_materials.at(triangle));
@@ -129,7 +132,12 @@ TEST(OddModels, ObjMaterialsHaveNamesWithSpaces) {
 
 // A polygon's area, on the side that its corners say, whatever triangles it is cut into.
 TEST(OddModels, PolygonsKeepTheirAreaAndSide) {
-  const struct { const char* name; std::string content; std::size_t triangles; Vec3 area; } cases[] = {
+  const struct {
+    const char* name;
+    std::string content;
+    std::size_t triangles;
+    Vec3 area;
+  } cases[] = {
       {"quad.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 1 2 3 4\n", 2, {0, 0, 6}},
       {"turned.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 4 3 2 1\n", 2, {0, 0, -6}},
       {"arrow.obj", "v 0 0 0\nv 4 1 0\nv 0 2 0\nv 3 1 0\nf 1 2 3 4\n", 2, {0, 0, 1}},
@@ -144,7 +152,8 @@ TEST(OddModels, PolygonsKeepTheirAreaAndSide) {
     EXPECT_EQ(mesh.triangles.size(), each.triangles);
     Vec3 sum(0);
     for (const UVec3& t : mesh.triangles) {
-      const Vec3 area = 0.5f * glm::cross(mesh.vertices[t.y] - mesh.vertices[t.x], mesh.vertices[t.z] - mesh.vertices[t.x]);
+      const Vec3 area =
+          0.5f * glm::cross(mesh.vertices[t.y] - mesh.vertices[t.x], mesh.vertices[t.z] - mesh.vertices[t.x]);
       EXPECT_GE(glm::dot(area, each.area), 0.0f);
       sum += area;
     }
@@ -167,16 +176,21 @@ std::string binary_stl(std::string head, const std::string& records) {
 
 TEST(OddModels, Stl) {
   const std::vector<float> two = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5};
-  const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-  const std::string other = "facet normal 0 0 1\nouter loop\nvertex 0 0 5\nvertex 1 0 5\nvertex 0 1 5\nendloop\nendfacet\n";
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  const std::string other =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 5\nvertex 1 0 5\nvertex 0 1 5\nendloop\nendfacet\n";
   const Odd cases[] = {
-      {"blanks.stl", "  solid\t x y\r\n\r\n\tfacet   normal\t0 0 1\r\n  outer \t loop\r\nvertex\t0  0 0\r\n vertex 1.0e+00 0 "
-                     "-0\r\n\t\tvertex +0 1 0 \r\nendloop\r\nendfacet\r\nendsolid\r\n", kOne},
+      {"blanks.stl",
+       "  solid\t x y\r\n\r\n\tfacet   normal\t0 0 1\r\n  outer \t loop\r\nvertex\t0  0 0\r\n vertex 1.0e+00 0 "
+       "-0\r\n\t\tvertex +0 1 0 \r\nendloop\r\nendfacet\r\nendsolid\r\n",
+       kOne},
       {"no_name.stl", "solid\n" + facet + "endsolid\n", kOne},
       {"two_solids.stl", "solid a\n" + facet + "endsolid a\nsolid b\n" + other + "endsolid b\n", two},
       {"no_end.stl", "solid a\n" + facet, kOne},
       {"solid.stl", binary_stl("solid block made by some program", stl_record(kOne)), kOne},
-      {"capital_solid.stl", binary_stl("SOLID BLOCK", stl_record({0, 0, 0, 12, 0, 0, 0, 1, 0})),
+      {"capital_solid.stl",
+       binary_stl("SOLID BLOCK", stl_record({0, 0, 0, 12, 0, 0, 0, 1, 0})),
        {0, 0, 0, 12, 0, 0, 0, 1, 0}},
       {"attributes.stl", binary_stl("x", stl_record(kOne, 0x8FFF)), kOne},
       {"colors.stl", binary_stl("COLOR=\x10\x20\x30\xFF,MATERIAL=", stl_record(kOne, 0x0010)), kOne},
@@ -187,8 +201,10 @@ TEST(OddModels, Stl) {
 }
 
 TEST(OddModels, StlInCapitals) {
-  check({"capitals.stl", "SOLID X\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\n"
-                         "ENDFACET\nENDSOLID X\n", kOne});
+  check({"capitals.stl",
+         "SOLID X\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\n"
+         "ENDFACET\nENDSOLID X\n",
+         kOne});
 }
 
 // Meshes of one triangle, and nodes around it.
@@ -205,23 +221,30 @@ TEST(OddModels, GltfNodes) {
       {"mirrored.gltf", gltf_of("{\"mesh\":0,\"scale\":[-1,1,1]}"), mirrored},
       {"mirrored_matrix.gltf", gltf_of("{\"mesh\":0,\"matrix\":[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}"), mirrored},
       {"mirrored_twice.gltf", gltf_of("{\"children\":[1],\"scale\":[-1,1,1]},{\"mesh\":0,\"scale\":[-1,1,1]}"), kOne},
-      {"mirrored_child.gltf", gltf_of("{\"children\":[1],\"translation\":[3,0,0]},{\"mesh\":0,\"scale\":[-1,1,1]}"),
+      {"mirrored_child.gltf",
+       gltf_of("{\"children\":[1],\"translation\":[3,0,0]},{\"mesh\":0,\"scale\":[-1,1,1]}"),
        {3, 0, 0, 3, 1, 0, 2, 0, 0}},
-      {"mirrored_parent.gltf", gltf_of("{\"children\":[1],\"scale\":[-1,1,1]},{\"mesh\":0,\"translation\":[3,0,0]}"),
+      {"mirrored_parent.gltf",
+       gltf_of("{\"children\":[1],\"scale\":[-1,1,1]},{\"mesh\":0,\"translation\":[3,0,0]}"),
        {-3, 0, 0, -3, 1, 0, -4, 0, 0}},
       {"inside_out.gltf", gltf_of("{\"mesh\":0,\"scale\":[-1,-1,-1]}"), {0, 0, 0, 0, -1, 0, -1, 0, 0}},
       {"flat.gltf", gltf_of("{\"mesh\":0,\"scale\":[1,0,1]}"), {0, 0, 0, 1, 0, 0, 0, 0, 0}},
-      {"instances.gltf", gltf_of("{\"children\":[1,2]},{\"mesh\":0},{\"mesh\":0,\"translation\":[0,0,5]}"),
+      {"instances.gltf",
+       gltf_of("{\"children\":[1,2]},{\"mesh\":0},{\"mesh\":0,\"translation\":[0,0,5]}"),
        {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5}},
-      {"roots.gltf", gltf_of("{\"mesh\":0},{\"mesh\":0,\"translation\":[0,0,5]}", "1,0"),
+      {"roots.gltf",
+       gltf_of("{\"mesh\":0},{\"mesh\":0,\"translation\":[0,0,5]}", "1,0"),
        {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5}},
       {"empty_node.gltf", gltf_of("{\"children\":[1,2]},{},{\"mesh\":0}"), kOne},
       {"unused.gltf", gltf_of("{\"mesh\":0},{\"mesh\":0,\"translation\":[9,9,9]}"), kOne},
-      {"translated.gltf", gltf_of("{\"mesh\":0,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,7,8,9,1]}"),
+      {"translated.gltf",
+       gltf_of("{\"mesh\":0,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,7,8,9,1]}"),
        {7, 8, 9, 8, 8, 9, 7, 9, 9}},
       // A quarter turn around z after a scale of its own: T R S.
-      {"order.gltf", gltf_of("{\"mesh\":0,\"translation\":[1,0,0],\"rotation\":[0,0,0.70710678,0.70710678],\"scale\":"
-                             "[2,3,1]}"), {1, 0, 0, 1, 2, 0, -2, 0, 0}},
+      {"order.gltf",
+       gltf_of("{\"mesh\":0,\"translation\":[1,0,0],\"rotation\":[0,0,0.70710678,0.70710678],\"scale\":"
+               "[2,3,1]}"),
+       {1, 0, 0, 1, 2, 0, -2, 0, 0}},
   };
   for (const Odd& odd : cases) check(odd);
 }
@@ -231,8 +254,8 @@ TEST(OddModels, GltfPrimitives) {
     GltfWriter writer;
     (void)writer.add_floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}, "VEC3", 3);
     if (!indices.empty()) (void)writer.add(indices, kGltfUnsignedByte, "SCALAR", indices.size());
-    return writer.binary("\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[" + primitive +
-                         "]}]");
+    return writer.binary("\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[" +
+                         primitive + "]}]");
   };
   const std::string own = "{\"attributes\":{\"POSITION\":0}", indexed = own + ",\"indices\":1";
   const std::vector<float> strip = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0};
@@ -247,7 +270,8 @@ TEST(OddModels, GltfPrimitives) {
       {"lines.glb", file(indexed + ",\"mode\":1}", {0, 1, 2, 3}), {}, {}, "2 lines"},
       {"loop.glb", file(own + ",\"mode\":2}"), {}, {}, "5 lines"},
       {"mixed.glb", file(own + ",\"mode\":0}," + indexed + "}", {0, 1, 2}), kOne, {}, "5 points"},
-      {"two.glb", file(indexed + "}," + own + ",\"mode\":5}", {0, 1, 2}),
+      {"two.glb",
+       file(indexed + "}," + own + ",\"mode\":5}", {0, 1, 2}),
        {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}},
   };
   for (const Odd& odd : cases) check(odd);
@@ -256,14 +280,16 @@ TEST(OddModels, GltfPrimitives) {
 TEST(OddModels, GltfFiles) {
   GltfWriter writer;
   (void)writer.add_floats(kOne, "VEC3", 3);
-  const std::string scene = "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]";
+  const std::string scene =
+      "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]";
   const std::string scenes = "\"scenes\":[{\"nodes\":[0]}]," + scene;
   std::string chunk = writer.binary(scenes);
   chunk += std::string("\x04\0\0\0XTRAabcd", 12);  // a chunk of a kind that nobody knows
   chunk[8] = static_cast<char>(chunk.size() & 0xFF);
   chunk[9] = static_cast<char>(chunk.size() >> 8);
   std::string bytes(reinterpret_cast<const char*>(kOne.data()), 36);
-  const std::string outside = gltf_text({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {.buffer_uri = "my%20buffer.bin"});
+  const std::string outside =
+      gltf_text({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {.buffer_uri = "my%20buffer.bin"});
   const std::string beside = gltf_buffer({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
   std::string several = writer.text(scenes);
   several.replace(several.find("{\"nodes\":[0]}"), 13, "{\"nodes\":[0]},{\"nodes\":[0]}");
@@ -290,11 +316,14 @@ TEST(OddModels, GltfFiles) {
 
 std::string collada(const std::string& asset, const std::string& primitives, const std::string& node = "") {
   return "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">"
-         "<asset>" + asset + "</asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
+         "<asset>" +
+         asset +
+         "</asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
          "<float_array id=\"a\" count=\"12\">0 0 0 1 0 0 1 1 0 0 1 0</float_array><technique_common>"
          "<accessor source=\"#a\" count=\"4\" stride=\"3\"><param name=\"X\" type=\"float\"/>"
          "<param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor></technique_common></source>"
-         "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>" + primitives +
+         "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>" +
+         primitives +
          "</mesh></geometry></library_geometries><library_visual_scenes><visual_scene id=\"s\"><node id=\"n\">" + node +
          "<instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes><scene>"
          "<instance_visual_scene url=\"#s\"/></scene></COLLADA>";
@@ -312,7 +341,8 @@ TEST(OddModels, Collada) {
       {"z_up.dae", collada("<up_axis>Z_UP</up_axis>", triangle), {0, 0, 0, 1, 0, 0, 0, 0, -1}},
       {"x_up.dae", collada("<up_axis>X_UP</up_axis>", triangle), {0, 0, 0, 0, 1, 0, -1, 0, 0}},
       {"inches.dae", collada(inches, triangle), {0, 0, 0, 0.0254f, 0, 0, 0, 0, -0.0254f}},
-      {"moved.dae", collada(inches, triangle, "<translate>0 0 10</translate>"),
+      {"moved.dae",
+       collada(inches, triangle, "<translate>0 0 10</translate>"),
        {0, 0.254f, 0, 0.0254f, 0.254f, 0, 0, 0.254f, -0.0254f}},
   };
   for (const Odd& odd : cases) check(odd);
@@ -325,12 +355,15 @@ TEST(OddModels, Collada) {
 TEST(OddModels, Fbx) {
   const auto file = [](const std::string& axis, const std::string& sign, const std::string& unit) {
     return "; FBX 7.3.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7300\n}\n"
-           "GlobalSettings:  {\n\tVersion: 1000\n\tProperties70:  {\n\t\tP: \"UpAxis\", \"int\", \"Integer\", \"\"," + axis +
-           "\n\t\tP: \"UpAxisSign\", \"int\", \"Integer\", \"\"," + sign +
-           "\n\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\"," + unit + "\n\t}\n}\nDefinitions:  {\n\tVersion: 100\n"
+           "GlobalSettings:  {\n\tVersion: 1000\n\tProperties70:  {\n\t\tP: \"UpAxis\", \"int\", \"Integer\", \"\"," +
+           axis + "\n\t\tP: \"UpAxisSign\", \"int\", \"Integer\", \"\"," + sign +
+           "\n\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\"," + unit +
+           "\n\t}\n}\nDefinitions:  {\n\tVersion: 100\n"
            "\tCount: 2\n}\nObjects:  {\n\tGeometry: 1001, \"Geometry::g\", \"Mesh\" {\n\t\tVertices: *9 {\n\t\t\ta: "
-           "0,0,0,1,0,0,0,1,0\n\t\t}\n\t\tPolygonVertexIndex: *3 {\n\t\t\ta: 0,1,-3\n\t\t}\n\t\tGeometryVersion: 124\n\t}\n"
-           "\tModel: 1002, \"Model::m\", \"Mesh\" {\n\t\tVersion: 232\n\t\tProperties70:  {\n\t\t\tP: \"Lcl Translation\", "
+           "0,0,0,1,0,0,0,1,0\n\t\t}\n\t\tPolygonVertexIndex: *3 {\n\t\t\ta: 0,1,-3\n\t\t}\n\t\tGeometryVersion: "
+           "124\n\t}\n"
+           "\tModel: 1002, \"Model::m\", \"Mesh\" {\n\t\tVersion: 232\n\t\tProperties70:  {\n\t\t\tP: \"Lcl "
+           "Translation\", "
            "\"Lcl Translation\", \"\", \"A\",5,0,0\n\t\t}\n\t}\n}\nConnections:  {\n\tC: \"OO\",1002,0\n"
            "\tC: \"OO\",1001,1002\n}\n";
   };
@@ -346,9 +379,10 @@ TEST(OddModels, Fbx) {
 
 // This program's own reader and Assimp's agree.
 TEST(OddModels, Ply) {
-  const std::string text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                           "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
-                           "3 0 1 2\n3 0 2 3\n";
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+      "3 0 1 2\n3 0 2 3\n";
   const TemporaryFolder folder("a.ply", text);
   tool::InputReader reader(folder.path("a.ply"), "expected a mesh");
   const ImportedModel model = tool::import_model(reader.read_all(), {.path = folder.path("a.ply"), .ending = "ply"});

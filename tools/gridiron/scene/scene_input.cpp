@@ -168,7 +168,8 @@ void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
 
 std::string words_of_model(const ImportReport& report, const Mesh& mesh, std::optional<std::uint64_t> triangles) {
   std::string words = report.format;
-  if (!report.reader.empty()) words += ", " + words_of_count(report.meshes) + (report.meshes == 1 ? " mesh" : " meshes");
+  if (!report.reader.empty())
+    words += ", " + words_of_count(report.meshes) + (report.meshes == 1 ? " mesh" : " meshes");
   if (!mesh.surface.materials.empty()) words += ", " + words_of_count(mesh.surface.materials.size(), "material");
   if (report.textures != 0) words += ", " + words_of_count(report.textures, "texture");
   if (triangles) words += ", " + words_of_count(*triangles, "triangle");
