@@ -380,13 +380,12 @@ void tell_scene(const aiScene& scene, const AssimpFiles& files, const GltfText* 
   }
 }
 
-std::vector<ImportedAnimation> animations_of(const aiScene& scene, const GltfScene* gltf) {
+std::vector<ImportedAnimation> animations_of(const aiScene& scene) {
   std::vector<ImportedAnimation> animations;
   for (unsigned i = 0; i < scene.mNumAnimations; ++i) {
     if (scene.mAnimations[i] == nullptr) throw ImportError("an animation is missing");
     const aiString& name = scene.mAnimations[i]->mName;
-    const double seconds = gltf != nullptr ? GltfMotion(*gltf, i).seconds() : seconds_of(*scene.mAnimations[i]);
-    animations.push_back({std::string(name.data, name.length), seconds});
+    animations.push_back({std::string(name.data, name.length), seconds_of(*scene.mAnimations[i])});
   }
   return animations;
 }
@@ -412,25 +411,22 @@ unsigned choose_animation(const std::vector<ImportedAnimation>& animations, cons
 // The scene at rest, or at a moment of one of its animations.
 Movement choose_movement(const aiScene& scene, const GltfScene* gltf, const ChildSettings& settings,
                          ImportReport& report) {
-  report.animations = animations_of(scene, gltf);
+  report.animations = animations_of(scene);
   std::optional<unsigned> chosen;
-  double seconds = 0;
-  if (settings.moment && !report.animations.empty()) {
-    chosen = choose_animation(report.animations, settings.animation);
-    seconds = *settings.moment * report.animations[*chosen].seconds;
-  }
+  if (settings.moment && !report.animations.empty()) chosen = choose_animation(report.animations, settings.animation);
   if (gltf != nullptr) {
     const GltfMotion motion(*gltf, chosen);
     if (motion.damaged_count() != 0) {
       report.ignored.push_back(words_of_count(motion.damaged_count(), "channel") + " with damaged keys");
     }
-    return motion.movement_at(seconds);
+    // Assimp's length is rounded, and the last moment must reach the last key.
+    return motion.movement_at(settings.moment.value_or(0) * motion.seconds());
   }
   if (!chosen) return {};
   if (scene.mAnimations[*chosen]->mNumMorphMeshChannels != 0 || scene.mAnimations[*chosen]->mNumMeshChannels != 0) {
     report.ignored.push_back("what the animation does to shapes");
   }
-  return movement_of(scene, *chosen, seconds);
+  return movement_of(scene, *chosen, *settings.moment * report.animations[*chosen].seconds);
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ bool read_phong(const aiMaterial& source, ModelFormat format, SceneMaterial& mat
   bool drops_highlight = false;
   const float share = brightness_of(specular);
   // Of OBJ's models of illumination 3 to 9 have mirrors. The others mean a highlight alone, which no material of ours
-  // has: 2 is what most programs write for everything, so that a mirror in its place would spoil most files.
+  // has: most programs write 2 for everything, and a mirror in its place is not what they mean.
   const bool is_obj = format == ModelFormat::kObj;
   (void)source.Get(AI_MATKEY_OBJ_ILLUM, model);
   ai_real reflectivity = 0;
@@ -153,7 +153,7 @@ void ModelMaterials::tell(std::vector<std::string>& ignored) const {
     ignored.push_back(words_of_count(other_textures_.size(), "texture") + " of something other than base colour");
   }
   add(highlights_, "highlights without mirrors");
-  add(emissions_, "light");
+  add(emissions_, "emission");
   add(masks_, "cut-outs");
   add(transforms_, "shifted or scaled textures");
   constexpr std::size_t kMostNames = 5;

@@ -68,6 +68,16 @@ TEST(GltfAnimation, CurvesAreThoseOfTheFile) {
   EXPECT_EQ(at(step, 0).report.animations.at(0).seconds, 4.0);
 }
 
+// The last moment is that of the last key, whatever float it is.
+TEST(GltfAnimation, TheLastKeyIsReached) {
+  for (const float last : {0.3f, 0.7f, 1.1f, 2.9f, 0.033333335f}) {
+    SCOPED_TRACE(last);
+    Moving moving;
+    const std::string text = moving.text(Moving::animation(moving.sampler({0, last}, {0, 0, 0, 6, 0, 0}, "STEP")));
+    expect_corner(at(text, 1).mesh, 0, 0, Vec3(6, 0, 0));
+  }
+}
+
 // A spline from 0 to 1 with slopes 3 and 0 at its ends, over 2 seconds: tangents count per second.
 TEST(GltfAnimation, SplinesUseTheirTangents) {
   Moving moving;

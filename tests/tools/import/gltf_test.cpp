@@ -232,7 +232,7 @@ TEST(Gltf, WhatMaterialsLoseIsReported) {
       "\"images\":[{\"uri\":\"a.png\"}]");
   const ImportedModel model = model_of("a.gltf", text);
   EXPECT_TRUE(ignores(model, "cut-outs of 1 material")) << testing::PrintToString(model.report.ignored);
-  EXPECT_TRUE(ignores(model, "light of 1 material"));
+  EXPECT_TRUE(ignores(model, "emission of 1 material"));
   EXPECT_TRUE(ignores(model, "1 texture of something other than base colour"));
 }
 

@@ -194,7 +194,10 @@ MadeFrame Series::make(std::size_t i, bool has_timeline, const FrameProgress& pr
   request.view = frame.framed.value_or(request_.view);
   RequestedFrame requested = complete_frame(request, std::move(input), camera_, bounds_ ? &*bounds_ : nullptr);
   choose_builder(animate_, requested.plan);
-  if (has_told_ && !frame.moment && !request.scene.quiet) tell_notes(requested.input);
+  if (has_told_ && !frame.moment && !request.scene.quiet) {
+    // Meshes of this program's own format lose nothing that would differ from frame to frame.
+    tell_notes(requested.input, /*tells_model=*/requested.input.model && !requested.input.model->reader.empty());
+  }
   if (!std::exchange(has_told_, true)) tell_frame_notes(request, requested);
   FrameMemory memory(frame_memory_bytes(requested.input, requested.plan));
   if (!animate_.keeps_vertex_order) memory.vertex_order = &vertex_order_;
