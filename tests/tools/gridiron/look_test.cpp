@@ -129,7 +129,7 @@ TEST(Look, ColoursWithoutAMaterialAreCounted) {
   constexpr std::uint32_t kMaterials = 40000, kRoom = tool::kMostSceneMaterials - 1 - kMaterials;
   TestMesh triangles;
   for (std::uint32_t i = 0; i < kMaterials; ++i) {
-    const auto x = static_cast<float>(i);
+    const float x = static_cast<float>(i) / 4096;
     triangles.append(make_triangle({x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}));
   }
   const auto colorless = [&](std::uint32_t materials) {
