@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "base/words.h"
 #include "commands.h"
@@ -226,7 +228,30 @@ Json tree_json(const SceneFacts& facts) {
           {"lattice_step", tree.lattice.step}};
 }
 
-void print_json(const InfoPlan& plan, const SceneFacts& facts) {
+// What the mesh's file holds; null for other scenes.
+Json model_json(const SceneInput& input) {
+  if (!input.model) return {};
+  const ImportReport& report = *input.model;
+  const MeshSurface& surface = std::get<Mesh>(input.content).surface;
+  const auto or_null = [](bool is_known, const Json& value) { return is_known ? value : Json(); };
+  Json animations = Json::array();
+  for (const ImportedAnimation& animation : report.animations) {
+    animations.push_back({{"name", animation.name}, {"seconds", animation.seconds}});
+  }
+  return {{"format", report.format},
+          {"reader", or_null(!report.reader.empty(), report.reader)},
+          {"meshes", report.meshes},
+          {"materials", surface.materials.size()},
+          {"textures", report.textures},
+          {"normals", !surface.triangle_normals.empty()},
+          {"colors", !surface.triangle_colors.empty()},
+          {"unit_metres", or_null(report.unit_metres > 0, report.unit_metres)},
+          {"up", or_null(!report.up.empty(), report.up)},
+          {"animations", animations},
+          {"ignored", Json(report.ignored)}};
+}
+
+void print_json(const InfoPlan& plan, const SceneInput& input, const SceneFacts& facts) {
   const GridRecord& grid = facts.grid;
   Json document = {
       {"version", 1},
@@ -238,6 +263,7 @@ void print_json(const InfoPlan& plan, const SceneFacts& facts) {
         {"triangles", facts.triangles},
         {"dropped_triangles", facts.dropped_triangles},
         {"bounds", {{"minimum", json_of(grid.bounds_minimum)}, {"maximum", json_of(grid.bounds_maximum)}}}}},
+      {"model", model_json(input)},
       {"grid", grid_json(facts)},
       {"tree", tree_json(facts)},
       {"main_memory",
@@ -310,11 +336,31 @@ void print_effects(const InfoPlan& plan, const SceneFacts& facts) {
   print_line("", words_of_bytes(effects.spill_bytes_per_core) + " a core for rays that wait");
 }
 
-void print_text(const InfoPlan& plan, const SceneFacts& facts) {
+// What the mesh's file holds; nothing for a PLY of triangles alone.
+void print_model(const SceneInput& input) {
+  if (!input.model) return;
+  const ImportReport& report = *input.model;
+  const Mesh& mesh = std::get<Mesh>(input.content);
+  if (report.reader.empty() && mesh.surface.is_empty()) return;
+  print_line("model", words_of_model(report, mesh, std::nullopt));
+  std::vector<std::string> animations;
+  for (const ImportedAnimation& animation : report.animations) {
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, "%.4g s", animation.seconds);
+    animations.push_back((animation.name.empty() ? "" : in_quotes(animation.name) + " ") + seconds);
+  }
+  if (!animations.empty()) {
+    print_line("animations", words_of_count(animations.size()) + ": " + words_of_list(animations));
+  }
+  if (!report.ignored.empty()) print_line("ignored", words_of_list(report.ignored));
+}
+
+void print_text(const InfoPlan& plan, const SceneInput& input, const SceneFacts& facts) {
   const GridRecord& grid = facts.grid;
   const StoreFacts& store = plan.local_store;
   print_line("scene", words_of_count(facts.triangles) + " triangles (" + words_of_count(facts.dropped_triangles) +
                           " of zero area dropped), " + words_of_count(facts.vertices) + " vertices");
+  print_model(input);
   char text[160];
   std::snprintf(text, sizeof text, "%g %g %g to %g %g %g", static_cast<double>(grid.bounds_minimum[0]),
                 static_cast<double>(grid.bounds_minimum[1]), static_cast<double>(grid.bounds_minimum[2]),
@@ -421,9 +467,9 @@ void run_command(const InfoRequest& request) {
   const SceneInput input = read_scene_input(request.scene.input, request.scene.tolerance,
                                             PictureRequest{.size = request.size}, kSceneExpected, request.scene.model);
   const InfoPlan plan = resolve(request, known_scene(input));
-  if (!request.scene.quiet) tell_notes(input);
+  if (!request.scene.quiet) tell_notes(input, /*tells_model=*/false);  // it is part of the result
   const SceneFacts facts = collect_scene_facts(plan, input, view);
-  plan.json ? print_json(plan, facts) : print_text(plan, facts);
+  plan.json ? print_json(plan, input, facts) : print_text(plan, input, facts);
 }
 
 }  // namespace gridiron::tool

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "base/content_hash.h"
+#include "import/model_text.h"
 
 namespace gridiron::tool {
 namespace {
@@ -65,27 +66,63 @@ std::optional<std::vector<std::byte>> read_plain_file(const std::string& path) {
   return bytes;
 }
 
+// "mtl" of "a.MTL".
+std::string ending_of(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return ending.empty() ? ending : ending.substr(1);
+}
+
 }  // namespace
+
+std::string without_percents(const std::string& text) {
+  const auto digit = [](char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+  };
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) >= 0 && digit(text[i + 2]) >= 0) {
+      plain += static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2]));
+      i += 2;
+    } else {
+      plain += text[i];
+    }
+  }
+  return plain;
+}
+
+AssimpFiles::AssimpFiles(std::string name, std::span<const std::byte> bytes)
+    : name_(std::move(name)), readable_(readable_bytes(bytes, ending_of(name_))), bytes_(bytes) {
+  if (readable_) bytes_ = *readable_;
+}
 
 bool AssimpFiles::Exists(const char* path) const {
   if (path == name_) return true;
   struct stat status {};
-  return ::stat(path, &status) == 0 && S_ISREG(status.st_mode);
+  for (const std::string& each : {std::string(path), without_percents(path)}) {
+    if (::stat(each.c_str(), &status) == 0 && S_ISREG(status.st_mode)) return true;
+  }
+  return false;
 }
 
 std::optional<std::span<const std::byte>> AssimpFiles::read(const std::string& path) {
   if (path == name_) return bytes_;
-  auto found = files_.find(path);
-  if (found == files_.end()) {
-    std::optional<std::vector<std::byte>> bytes = read_plain_file(path);
-    if (!bytes) {
-      constexpr std::size_t kMostListed = 1000;
-      if (missing_.size() < kMostListed) missing_.insert(path);
-      return std::nullopt;
+  for (const std::string& each : {path, without_percents(path)}) {
+    auto found = files_.find(each);
+    if (found == files_.end()) {
+      std::optional<std::vector<std::byte>> bytes = read_plain_file(each);
+      if (!bytes) continue;
+      const std::uint64_t content = content_hash(*bytes);
+      if (auto readable = readable_bytes(*bytes, ending_of(each))) bytes = std::move(readable);
+      found = files_.emplace(each, File{std::move(*bytes), content}).first;
     }
-    found = files_.emplace(path, std::move(*bytes)).first;
+    return std::span<const std::byte>(found->second.bytes);
   }
-  return std::span<const std::byte>(found->second);
+  constexpr std::size_t kMostListed = 1000;
+  if (missing_.size() < kMostListed) missing_.insert(path);
+  return std::nullopt;
 }
 
 Assimp::IOStream* AssimpFiles::Open(const char* path, const char* mode) {
@@ -100,7 +137,7 @@ void AssimpFiles::Close(Assimp::IOStream* file) {
 
 std::vector<NeighbourFile> AssimpFiles::neighbours() const {
   std::vector<NeighbourFile> list;
-  for (const auto& [path, bytes] : files_) list.push_back({path, content_hash(bytes)});
+  for (const auto& [path, file] : files_) list.push_back({path, file.content});
   return list;
 }
 

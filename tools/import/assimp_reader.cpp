@@ -12,8 +12,12 @@
 #include <new>
 #include <utility>
 
+#include "base/numbers.h"
 #include "base/words.h"
 #include "import/assimp_files.h"
+#include "import/gltf_motion.h"
+#include "import/gltf_scene.h"
+#include "import/gltf_text.h"
 #include "import/import_child.h"
 #include "import/model_materials.h"
 #include "import/model_stream.h"
@@ -54,7 +58,7 @@ std::vector<NodeMatrix> skin_of(const aiMesh& mesh, const NodePose& pose, const 
   std::vector<double> sums(mesh.mNumVertices, 0.0);
   for (unsigned i = 0; i < mesh.mNumBones; ++i) {
     const aiBone& bone = *mesh.mBones[i];
-    const NodeMatrix* const place = pose.find({bone.mName.data, bone.mName.length});
+    const NodeMatrix* const place = pose.find(bone);
     if (place == nullptr) continue;
     const NodeMatrix world_from_mesh = *place * as_double(bone.mOffsetMatrix);
     for (unsigned k = 0; k < bone.mNumWeights; ++k) {
@@ -81,6 +85,19 @@ std::vector<NodeMatrix> skin_of(const aiMesh& mesh, const NodePose& pose, const 
   return matrices;
 }
 
+// A mesh as its morph targets leave it: its own vectors, and the way to each target's by its weight.
+std::vector<aiVector3D> morphed(const aiMesh& mesh, const std::vector<float>& weights, const aiVector3D* own,
+                                aiVector3D* aiAnimMesh::*of_target) {
+  std::vector<aiVector3D> vectors(own, own + mesh.mNumVertices);
+  for (unsigned i = 0; i < mesh.mNumAnimMeshes; ++i) {
+    const aiAnimMesh& target = *mesh.mAnimMeshes[i];
+    const aiVector3D* const moved = target.*of_target;
+    if (weights[i] == 0.0f || moved == nullptr || target.mNumVertices != mesh.mNumVertices) continue;
+    for (unsigned k = 0; k < mesh.mNumVertices; ++k) vectors[k] += (moved[k] - own[k]) * weights[i];
+  }
+  return vectors;
+}
+
 class MeshJoiner {
  public:
   MeshJoiner(const aiScene& scene, ModelFormat format, const NodePose& pose, const ModelMaterials& materials)
@@ -91,7 +108,7 @@ class MeshJoiner {
       for (unsigned i = 0; i < node.node->mNumMeshes; ++i) {
         const unsigned mesh = node.node->mMeshes[i];
         if (mesh >= scene_.mNumMeshes || scene_.mMeshes[mesh] == nullptr) throw ImportError("a node names no mesh");
-        add(*scene_.mMeshes[mesh], node.world_from_node);
+        add(*scene_.mMeshes[mesh], node);
       }
     }
   }
@@ -101,7 +118,8 @@ class MeshJoiner {
   void tell(std::vector<std::string>& ignored) const;
 
  private:
-  void add(const aiMesh& mesh, const NodeMatrix& world_from_node);
+  void add(const aiMesh& mesh, const PosedNode& node);
+  void morph(const aiMesh& mesh, const aiNode& node);
   void add_triangle(const aiMesh& mesh, const std::array<unsigned, 3>& corners, const ModelMaterial& material);
   [[nodiscard]] std::uint16_t material_index(const aiMesh& mesh, bool has_normals);
   [[nodiscard]] float footprint_of(const aiMesh& mesh, const std::array<unsigned, 3>& corners,
@@ -117,9 +135,10 @@ class MeshJoiner {
   Mesh result_;
   std::map<std::pair<unsigned, bool>, std::uint16_t> material_indices_;
   bool has_own_material_ = false, has_normals_ = false, has_colors_ = false;
-  std::uint64_t meshes_ = 0, points_ = 0, lines_ = 0, polygons_ = 0, morphs_ = 0;
-  // Of the mesh being added, one per vertex.
+  std::uint64_t meshes_ = 0, points_ = 0, lines_ = 0, polygons_ = 0, placeless_ = 0;
+  // Of the mesh being added, one per vertex; morphed vectors only where a target has a weight.
   std::vector<std::uint32_t> position_of_, normal_of_;
+  std::vector<aiVector3D> morphed_positions_, morphed_normals_;
 };
 
 std::uint16_t MeshJoiner::material_index(const aiMesh& mesh, bool has_normals) {
@@ -138,12 +157,24 @@ std::uint16_t MeshJoiner::material_index(const aiMesh& mesh, bool has_normals) {
   return place->second;
 }
 
+bool has_places(const aiMesh& mesh, const ModelMaterial& material) {
+  return material.texture != nullptr && mesh.mTextureCoords[material.uv_channel] != nullptr;
+}
+
+// The place of a vertex in its texture.
+std::array<double, 2> place_of(const aiMesh& mesh, unsigned vertex, const ModelMaterial& material) {
+  const aiVector3D& uv = mesh.mTextureCoords[material.uv_channel][vertex];
+  const double u = uv.x, v = uv.y;
+  const PlaceTransform& t = material.places;
+  return {t.u_of_u * u + t.u_of_v * v + t.u_shift, t.v_of_u * u + t.v_of_v * v + t.v_shift};
+}
+
 // How wide the third of a triangle that a corner stands for is, in texels.
 float MeshJoiner::footprint_of(const aiMesh& mesh, const std::array<unsigned, 3>& corners,
                                const ModelMaterial& material) const {
-  const aiVector3D* const uv = mesh.mTextureCoords[material.uv_channel];
-  const double ux = uv[corners[1]].x - uv[corners[0]].x, uy = uv[corners[1]].y - uv[corners[0]].y;
-  const double vx = uv[corners[2]].x - uv[corners[0]].x, vy = uv[corners[2]].y - uv[corners[0]].y;
+  const auto a = place_of(mesh, corners[0], material), b = place_of(mesh, corners[1], material),
+             c = place_of(mesh, corners[2], material);
+  const double ux = b[0] - a[0], uy = b[1] - a[1], vx = c[0] - a[0], vy = c[1] - a[1];
   const double texels = 0.5 * std::abs(ux * vy - uy * vx) * material.texture->width() * material.texture->height();
   return std::isfinite(texels) ? static_cast<float>(std::sqrt(texels / 3.0)) : 0.0f;
 }
@@ -151,9 +182,10 @@ float MeshJoiner::footprint_of(const aiMesh& mesh, const std::array<unsigned, 3>
 Vec3 MeshJoiner::color_of(const aiMesh& mesh, unsigned vertex, const ModelMaterial& material, float footprint) const {
   const auto clamped = [](float value) { return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f; };
   Vec3 color = material.material.color;
-  if (material.texture != nullptr && mesh.mTextureCoords[material.uv_channel] != nullptr) {
-    const aiVector3D& uv = mesh.mTextureCoords[material.uv_channel][vertex];
-    color *= material.texture->sample(uv.x, uv.y, material.wrap_u, material.wrap_v, footprint);
+  if (has_places(mesh, material)) {
+    const std::array<double, 2> place = place_of(mesh, vertex, material);
+    color *= material.texture->sample(static_cast<float>(place[0]), static_cast<float>(place[1]), material.wrap_u,
+                                      material.wrap_v, footprint);
   }
   if (mesh.mColors[0] != nullptr) {
     const aiColor4D& own = mesh.mColors[0][vertex];
@@ -167,7 +199,22 @@ Vec3 MeshJoiner::color_of(const aiMesh& mesh, unsigned vertex, const ModelMateri
   return {clamped(color.x), clamped(color.y), clamped(color.z)};
 }
 
-void MeshJoiner::add(const aiMesh& mesh, const NodeMatrix& world_from_node) {
+void MeshJoiner::morph(const aiMesh& mesh, const aiNode& node) {
+  morphed_positions_.clear();
+  morphed_normals_.clear();
+  std::vector<float> weights;
+  for (unsigned i = 0; i < mesh.mNumAnimMeshes; ++i) {
+    const bool is_there = mesh.mAnimMeshes[i] != nullptr;
+    const float weight = is_there ? pose_.weight_of(node, mesh, i) : 0.0f;
+    weights.push_back(std::isfinite(weight) ? weight : 0.0f);
+  }
+  if (std::ranges::all_of(weights, [](float weight) { return weight == 0.0f; })) return;
+  morphed_positions_ = morphed(mesh, weights, mesh.mVertices, &aiAnimMesh::mVertices);
+  if (mesh.mNormals != nullptr) morphed_normals_ = morphed(mesh, weights, mesh.mNormals, &aiAnimMesh::mNormals);
+}
+
+void MeshJoiner::add(const aiMesh& mesh, const PosedNode& node) {
+  const NodeMatrix& world_from_node = node.world_from_node;
   if (mesh.mNumFaces == 0) {
     points_ += mesh.mNumVertices;
     return;
@@ -178,7 +225,7 @@ void MeshJoiner::add(const aiMesh& mesh, const NodeMatrix& world_from_node) {
   const bool has_normals = mesh.mNormals != nullptr && format_ != ModelFormat::kStl;
   const bool stays = skin.empty() && is_identity(world_from_node);
   const bool turns = determinant(skin.empty() ? world_from_node : skin[0]) < 0;
-  morphs_ += mesh.mNumAnimMeshes != 0 ? 1 : 0;
+  morph(mesh, *node.node);
   position_of_.assign(mesh.mNumVertices, kNoNormal);
   normal_of_.assign(mesh.mNumVertices, kNoNormal);
   const ModelMaterial& material = materials_.of(mesh.mMaterialIndex);
@@ -194,7 +241,7 @@ void MeshJoiner::add(const aiMesh& mesh, const NodeMatrix& world_from_node) {
     for (const unsigned vertex : corners) {
       if (vertex >= mesh.mNumVertices) throw ImportError("an index names no vertex");
       if (position_of_[vertex] != kNoNormal) continue;
-      const aiVector3D& own = mesh.mVertices[vertex];
+      const aiVector3D& own = morphed_positions_.empty() ? mesh.mVertices[vertex] : morphed_positions_[vertex];
       Vec3 position(own.x, own.y, own.z);
       const NodeMatrix& matrix = skin.empty() ? world_from_node : skin[vertex];
       if (!stays) {
@@ -206,7 +253,7 @@ void MeshJoiner::add(const aiMesh& mesh, const NodeMatrix& world_from_node) {
       }
       position_of_[vertex] = positions_.index_of(position);
       if (!has_normals) continue;
-      const aiVector3D& normal = mesh.mNormals[vertex];
+      const aiVector3D& normal = morphed_normals_.empty() ? mesh.mNormals[vertex] : morphed_normals_[vertex];
       DoubleVector turned(normal.x, normal.y, normal.z);
       if (!stays) turned = normal_matrix(matrix) * turned * (turns ? -1.0 : 1.0);
       const double length = turned.Length();
@@ -219,6 +266,7 @@ void MeshJoiner::add(const aiMesh& mesh, const NodeMatrix& world_from_node) {
     has_triangle = true;
   }
   meshes_ += has_triangle ? 1 : 0;
+  if (has_triangle && material.texture != nullptr && !has_places(mesh, material)) ++placeless_;
 }
 
 void MeshJoiner::add_triangle(const aiMesh& mesh, const std::array<unsigned, 3>& corners,
@@ -235,7 +283,7 @@ void MeshJoiner::add_triangle(const aiMesh& mesh, const std::array<unsigned, 3>&
   result_.surface.triangle_normals.push_back(normals);
   has_normals_ = has_normals_ || has_normals;
   UVec3 colors(kNoNormal);
-  const bool has_texture = material.texture != nullptr && mesh.mTextureCoords[material.uv_channel] != nullptr;
+  const bool has_texture = has_places(mesh, material);
   if (has_texture || mesh.mColors[0] != nullptr) {
     const float footprint = has_texture ? footprint_of(mesh, corners, material) : 0.0f;
     for (int i = 0; i < 3; ++i) {
@@ -265,8 +313,10 @@ void MeshJoiner::tell(std::vector<std::string>& ignored) const {
   if (points_ != 0) ignored.push_back(words_of_count(points_, "point"));
   if (lines_ != 0) ignored.push_back(words_of_count(lines_, "line"));
   if (polygons_ != 0) ignored.push_back(words_of_count(polygons_, "polygon") + " that cannot be cut into triangles");
-  if (morphs_ != 0)
-    ignored.push_back("the morph targets of " + words_of_count(morphs_) + (morphs_ == 1 ? " mesh" : " meshes"));
+  if (placeless_ != 0) {
+    ignored.push_back("the texture of " + words_of_count(placeless_) + (placeless_ == 1 ? " mesh" : " meshes") +
+                      " without texture coordinates");
+  }
 }
 
 std::string words_of_format(const std::string& ending, const Assimp::Importer& importer) {
@@ -278,27 +328,34 @@ std::string words_of_format(const std::string& ending, const Assimp::Importer& i
   return description != nullptr && description->mName != nullptr ? description->mName : ending;
 }
 
-std::string words_of_frame(ModelFormat format, const aiScene& scene) {
-  if (format == ModelFormat::kGltf) return "in metres, y up";
-  std::int32_t axis = -1;
-  if (scene.mMetaData != nullptr && scene.mMetaData->Get("UpAxis", axis) && axis >= 0 && axis <= 2) {
-    std::string words = std::string(1, static_cast<char>('x' + axis)) + " up";
-    double centimetres = 0;
-    if (scene.mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0) {
-      char text[64];
-      std::snprintf(text, sizeof text, "in units of %g cm, ", centimetres);
-      words = text + words;
-    }
-    return words;
+// Units and axes as the joined mesh has them.
+void read_frame(ModelFormat format, const std::string& ending, const aiScene& scene, ImportReport& report) {
+  // Assimp converts Collada to both.
+  if (format == ModelFormat::kGltf || ending == "dae") {
+    report.unit_metres = 1;
+    report.up = std::string("y");
+    return;
   }
-  return "";
+  if (scene.mMetaData == nullptr) return;
+  std::int32_t axis = -1, sign = 1;
+  if (scene.mMetaData->Get("UpAxis", axis) && axis >= 0 && axis <= 2) {
+    (void)scene.mMetaData->Get("UpAxisSign", sign);
+    constexpr const char* kAxes[2][3] = {{"x", "y", "z"}, {"-x", "-y", "-z"}};
+    report.up = std::string(kAxes[sign < 0 ? 1 : 0][axis]);
+  }
+  float centimetres = 0;
+  double wide = 0;
+  if (!scene.mMetaData->Get("UnitScaleFactor", centimetres) && scene.mMetaData->Get("UnitScaleFactor", wide)) {
+    centimetres = static_cast<float>(wide);
+  }
+  if (centimetres > 0 && centimetres < 1e9f) report.unit_metres = static_cast<double>(centimetres) / 100;
 }
 
 bool is_shortage(const std::string& words) {
   return words.find("bad_alloc") != std::string::npos || words.find("emory") != std::string::npos;
 }
 
-void tell_scene(const aiScene& scene, const ModelMaterials& materials, const AssimpFiles& files, bool is_posed,
+void tell_scene(const aiScene& scene, const AssimpFiles& files, const GltfText* gltf, bool is_posed,
                 std::vector<std::string>& ignored) {
   const auto add = [&ignored](std::uint64_t count, const char* noun) {
     if (count != 0) ignored.push_back(words_of_count(count, noun));
@@ -307,22 +364,69 @@ void tell_scene(const aiScene& scene, const ModelMaterials& materials, const Ass
   add(scene.mNumLights, "light");
   const unsigned kept = is_posed && scene.mNumAnimations != 0 ? 1 : 0;
   add(scene.mNumAnimations - kept, "animation");
-  if (const std::size_t others = materials.other_texture_count(); others != 0) {
-    ignored.push_back(words_of_count(others, "texture") + " of something other than base colour");
-  }
-  if (materials.dropped_highlight_count() != 0) {
-    ignored.push_back("highlights without mirrors of " +
-                      words_of_count(materials.dropped_highlight_count(), "material"));
+  if (gltf != nullptr) {
+    const Json* const scenes = member(&gltf->root(), "scenes");
+    if (scenes != nullptr && scenes->size() > 1) add(scenes->size() - 1, "other scene");
+    std::vector<std::string> names;
+    for (const std::string& name : gltf->unused_extensions()) names.push_back(in_quotes(name));
+    if (!names.empty()) {
+      ignored.push_back(std::string(names.size() == 1 ? "the extension " : "the extensions ") + words_of_list(names));
+    }
   }
   constexpr std::size_t kMostNames = 5;
-  for (std::size_t i = 0; i < std::min(kMostNames, materials.unread_textures().size()); ++i) {
-    ignored.push_back("the texture " + in_quotes(materials.unread_textures()[i]) +
-                      ", which is missing or cannot be read");
-  }
   std::size_t named = 0;
   for (const std::string& path : files.missing()) {
     if (named++ < kMostNames) ignored.push_back("the missing file " + in_quotes(path));
   }
+}
+
+std::vector<ImportedAnimation> animations_of(const aiScene& scene) {
+  std::vector<ImportedAnimation> animations;
+  for (unsigned i = 0; i < scene.mNumAnimations; ++i) {
+    if (scene.mAnimations[i] == nullptr) throw ImportError("an animation is missing");
+    const aiString& name = scene.mAnimations[i]->mName;
+    animations.push_back({std::string(name.data, name.length), seconds_of(*scene.mAnimations[i])});
+  }
+  return animations;
+}
+
+// The animation with a name, or with a number from 1 on; the first one if neither is given.
+unsigned choose_animation(const std::vector<ImportedAnimation>& animations, const std::string& wanted) {
+  if (wanted.empty()) return 0;
+  const auto named = std::ranges::find(animations, wanted, &ImportedAnimation::name);
+  if (named != animations.end()) return static_cast<unsigned>(named - animations.begin());
+  const std::optional<std::uint32_t> number = parse_count(wanted);
+  if (number && *number >= 1 && *number <= animations.size()) return *number - 1;
+  std::vector<std::string> names;
+  constexpr std::size_t kMostNames = 20;
+  for (std::size_t i = 0; i < std::min(animations.size(), kMostNames); ++i) {
+    names.push_back(std::to_string(i + 1));
+    if (!animations[i].name.empty()) names.back().append(" ").append(in_quotes(animations[i].name));
+  }
+  if (animations.size() > kMostNames) names.push_back("more");
+  throw ImportError("has " + words_of_count(animations.size(), "animation") + ", " + words_of_list(names) +
+                    "; none is " + in_quotes(wanted));
+}
+
+// The scene at rest, or at a moment of one of its animations.
+Movement choose_movement(const aiScene& scene, const GltfScene* gltf, const ChildSettings& settings,
+                         ImportReport& report) {
+  report.animations = animations_of(scene);
+  std::optional<unsigned> chosen;
+  if (settings.moment && !report.animations.empty()) chosen = choose_animation(report.animations, settings.animation);
+  if (gltf != nullptr) {
+    const GltfMotion motion(*gltf, chosen);
+    if (motion.damaged_count() != 0) {
+      report.ignored.push_back(words_of_count(motion.damaged_count(), "channel") + " with damaged keys");
+    }
+    // Assimp's length is rounded, and the last moment must reach the last key.
+    return motion.movement_at(settings.moment.value_or(0) * motion.seconds());
+  }
+  if (!chosen) return {};
+  if (scene.mAnimations[*chosen]->mNumMorphMeshChannels != 0 || scene.mAnimations[*chosen]->mNumMeshChannels != 0) {
+    report.ignored.push_back("what the animation does to shapes");
+  }
+  return movement_of(scene, *chosen, *settings.moment * report.animations[*chosen].seconds);
 }
 
 }  // namespace
@@ -335,27 +439,35 @@ ImportedModel read_with_assimp(std::span<const std::byte> bytes, const ChildSett
   auto& files = *new AssimpFiles((folder / (stem + "." + settings.ending)).string(), bytes);
   importer.SetIOHandler(&files);
   const ModelFormat format = format_of_ending(settings.ending);
-  const aiScene* const scene = importer.ReadFile(files.name(), aiProcess_Triangulate);
-  if (scene == nullptr) {
+  std::optional<GltfText> text;
+  if (format == ModelFormat::kGltf) text = GltfText::parse(bytes, files);
+  if (text) text->require_readable();
+  if (importer.ReadFile(files.name(), aiProcess_Triangulate) == nullptr) {
     const std::string words = importer.GetErrorString();
     if (is_shortage(words)) throw std::bad_alloc();
     throw ImportError(words.empty() ? "Assimp cannot read it" : "Assimp cannot read it: " + words);
   }
-  const NodePose pose(*scene, settings.moment);
-  const ModelMaterials materials(*scene, format, files);
-  MeshJoiner joiner(*scene, format, pose, materials);
-  joiner.add_all();
+  const std::string reader_format = words_of_format(settings.ending, importer);
+  aiScene& scene = *importer.GetOrphanedScene();
+  std::optional<GltfScene> gltf;
+  if (text) gltf.emplace(*text, scene);
+  const GltfScene* const gltf_scene = gltf ? &*gltf : nullptr;
   ImportedModel model;
-  model.mesh = joiner.take();
   ImportReport& report = model.report;
-  report.format = words_of_format(settings.ending, importer);
+  const NodePose pose(scene, choose_movement(scene, gltf_scene, settings, report));
+  const ModelMaterials materials(scene, format, files, gltf_scene);
+  MeshJoiner joiner(scene, format, pose, materials);
+  joiner.add_all();
+  model.mesh = joiner.take();
+  report.format = reader_format;
   report.reader = "Assimp " + std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor()) + "." +
                   std::to_string(aiGetVersionPatch());
-  report.frame = words_of_frame(format, *scene);
+  read_frame(format, settings.ending, scene, report);
   report.meshes = joiner.mesh_count();
-  report.animation_seconds = animation_seconds(*scene);
+  report.textures = materials.texture_count();
   joiner.tell(report.ignored);
-  tell_scene(*scene, materials, files, settings.moment.has_value(), report.ignored);
+  materials.tell(report.ignored);
+  tell_scene(scene, files, text ? &*text : nullptr, settings.moment.has_value(), report.ignored);
   model.neighbours = files.neighbours();
   return model;
 }

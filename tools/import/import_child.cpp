@@ -68,17 +68,18 @@ std::vector<std::string> words_of(const ChildSettings& settings) {
                                     std::to_string(settings.memory_bytes),
                                     std::to_string(settings.cpu_seconds),
                                     std::to_string(settings.parent),
-                                    "rest"};
+                                    "rest",
+                                    settings.animation};
   if (settings.moment) {
     char text[40];
     std::snprintf(text, sizeof text, "%.17g", *settings.moment);
-    words.back() = text;
+    words[5] = text;
   }
   return words;
 }
 
 std::optional<ChildSettings> settings_of(std::span<const char* const> words) {
-  constexpr std::size_t kCount = 6;
+  constexpr std::size_t kCount = 7;
   if (words.size() != kCount) return std::nullopt;
   const auto number = [](const char* word) { return std::strtoull(word, nullptr, 10); };
   ChildSettings settings{.path = words[0],
@@ -86,7 +87,8 @@ std::optional<ChildSettings> settings_of(std::span<const char* const> words) {
                          .memory_bytes = number(words[2]),
                          .cpu_seconds = static_cast<std::uint32_t>(number(words[3])),
                          .parent = static_cast<pid_t>(number(words[4])),
-                         .moment = std::nullopt};
+                         .moment = std::nullopt,
+                         .animation = words[6]};
   if (std::strcmp(words[5], "rest") != 0) settings.moment = std::strtod(words[5], nullptr);
   return settings;
 }

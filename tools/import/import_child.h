@@ -22,7 +22,8 @@ struct ChildSettings {
   std::uint64_t memory_bytes = 0;
   std::uint32_t cpu_seconds = 0;
   pid_t parent = 0;
-  std::optional<double> moment;  ///< of the first animation, 0..1
+  std::optional<double> moment;  ///< of an animation, 0..1
+  std::string animation;         ///< as ImportOptions has it
 };
 
 /// The arguments behind the command's name.

@@ -12,8 +12,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "base/failure.h"
@@ -128,7 +131,8 @@ pid_t start_child(const ImportRequest& request, std::uint64_t memory_bytes, int 
                                .memory_bytes = memory_bytes,
                                .cpu_seconds = request.options.most_seconds,
                                .parent = ::getpid(),
-                               .moment = request.options.moment};
+                               .moment = request.options.moment,
+                               .animation = request.options.animation};
   std::vector<std::string> words = words_of(settings);
   words.insert(words.begin(), {"gridiron", kImportCommand});
   std::vector<char*> arguments;
@@ -169,6 +173,29 @@ bool can_import() {
 #else
   return false;
 #endif
+}
+
+std::string words_of_frame(const ImportReport& report) {
+  std::string words;
+  if (report.unit_metres > 0) {
+    constexpr std::pair<double, const char*> kUnits[] = {
+        {1.0, "metres"}, {0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}, {0.3048, "feet"}};
+    const auto is_same = [&report](const auto& unit) { return std::abs(report.unit_metres / unit.first - 1) < 1e-5; };
+    const auto found = std::ranges::find_if(kUnits, is_same);
+    char text[64];
+    std::snprintf(text, sizeof text, "units of %g m", report.unit_metres);
+    words = std::string("in ") + (found != std::end(kUnits) ? found->second : text);
+  }
+  if (!report.up.empty()) words += (words.empty() ? "" : ", ") + report.up + " up";
+  return words;
+}
+
+std::string words_of_list(const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    list += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  }
+  return list;
 }
 
 ImportedModel import_model(InputFile file, const ImportRequest& request) {

@@ -19,7 +19,8 @@ namespace gridiron::tool {
 struct ImportOptions {
   std::uint64_t memory_bytes = 0;    ///< beside the program itself; 0: half of the host's memory, at least 1 GB
   std::uint32_t most_seconds = 300;  ///< of CPU time, and of time on the clock
-  std::optional<double> moment{};    ///< of the first animation, 0..1 of its length; nothing: the pose at rest
+  std::optional<double> moment{};    ///< of an animation, 0..1 of its length; nothing: the pose at rest
+  std::string animation{};           ///< its name, or its number from 1 on; empty: the first
 };
 
 /// What to read of a model.
@@ -29,15 +30,28 @@ struct ImportRequest {
   ImportOptions options{};
 };
 
+struct ImportedAnimation {
+  std::string name;  ///< may be empty
+  double seconds = 0;
+};
+
 /// What was read and what was not, in words for people.
 struct ImportReport {
-  std::string format;                ///< "OBJ", "glTF"
-  std::string reader;                ///< "Assimp 5.2.4"
-  std::string frame;                 ///< "in metres, y up", or empty if the file does not say
-  std::uint64_t meshes = 0;          ///< with triangles, each time that a node shows one
-  double animation_seconds = 0;      ///< length of the first animation, 0 without one
+  std::string format;          ///< "OBJ", "glTF", "PLY"
+  std::string reader;          ///< "Assimp 5.2.4"; empty: this program
+  double unit_metres = 0;      ///< length of a unit, 0 if the file does not say
+  std::string up;              ///< "y", "-z", or empty if the file does not say
+  std::uint64_t meshes = 0;    ///< with triangles, each time that a node shows one
+  std::uint64_t textures = 0;  ///< that gave colours
+  std::vector<ImportedAnimation> animations;
   std::vector<std::string> ignored;  ///< "3 lines", "2 cameras"
 };
+
+/// @returns "in metres, y up"; empty if the file does not say.
+[[nodiscard]] std::string words_of_frame(const ImportReport& report);
+
+/// @returns "a, b and c".
+[[nodiscard]] std::string words_of_list(const std::vector<std::string>& words);
 
 /// A file beside the model that was read for it.
 struct NeighbourFile {

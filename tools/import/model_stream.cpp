@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace gridiron::tool {
 namespace {
@@ -164,9 +165,16 @@ bool write_model(const ImportedModel& model, const ByteSink& sink) {
   Writer writer(sink);
   writer.value(kModelMagic);
   const ImportReport& report = model.report;
-  for (const std::string* text : {&report.format, &report.reader, &report.frame}) writer.text(*text);
+  for (const std::string* text : {&report.format, &report.reader, &report.up}) writer.text(*text);
+  writer.value(report.unit_metres);
   writer.value(report.meshes);
-  writer.value(report.animation_seconds);
+  writer.value(report.textures);
+  const std::size_t animations = std::min<std::size_t>(report.animations.size(), kMostTexts);
+  writer.value(static_cast<std::uint32_t>(animations));
+  for (std::size_t i = 0; i < animations; ++i) {
+    writer.text(report.animations[i].name);
+    writer.value(report.animations[i].seconds);
+  }
   const std::size_t ignored = std::min<std::size_t>(report.ignored.size(), kMostTexts);
   writer.value(static_cast<std::uint32_t>(ignored));
   for (std::size_t i = 0; i < ignored; ++i) writer.text(report.ignored[i]);
@@ -218,10 +226,19 @@ ImportedModel read_model(const ByteSource& source, std::uint64_t most_bytes) {
   if (magic != kModelMagic) damaged("it does not begin as one");
   ImportedModel model;
   ImportReport& report = model.report;
-  for (std::string* text : {&report.format, &report.reader, &report.frame}) *text = reader.text();
+  for (std::string* text : {&report.format, &report.reader, &report.up}) *text = reader.text();
+  report.unit_metres = reader.value<double>();
+  if (!(report.unit_metres >= 0.0 && report.unit_metres <= 1e9)) damaged("a unit is out of range");
   report.meshes = reader.value<std::uint64_t>();
-  report.animation_seconds = reader.value<double>();
-  if (!(report.animation_seconds >= 0.0 && report.animation_seconds <= 1e9)) damaged("a time is out of range");
+  report.textures = reader.value<std::uint64_t>();
+  const auto animations = reader.value<std::uint32_t>();
+  if (animations > kMostTexts) damaged("a count is too large");
+  for (std::uint32_t i = 0; i < animations; ++i) {
+    std::string name = reader.text();
+    const auto seconds = reader.value<double>();
+    if (!(seconds >= 0.0 && seconds <= 1e9)) damaged("a time is out of range");
+    report.animations.push_back({std::move(name), seconds});
+  }
   const auto texts = reader.value<std::uint32_t>();
   if (texts > kMostTexts) damaged("a count is too large");
   for (std::uint32_t i = 0; i < texts; ++i) report.ignored.push_back(reader.text());

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "import/model_stream.h"
 
@@ -58,18 +61,6 @@ aiMatrix4x4 matrix_of(const aiNodeAnim& channel, const aiMatrix4x4& at_rest, dou
                      vector_at(channel.mPositionKeys, channel.mNumPositionKeys, time, position));
 }
 
-using Channels = std::unordered_map<std::string_view, const aiNodeAnim*>;
-
-Channels channels_of(const aiScene& scene) {
-  Channels channels;
-  const aiAnimation& animation = *scene.mAnimations[0];
-  for (unsigned i = 0; i < animation.mNumChannels; ++i) {
-    const aiNodeAnim* const channel = animation.mChannels[i];
-    channels.emplace(std::string_view(channel->mNodeName.data, channel->mNodeName.length), channel);
-  }
-  return channels;
-}
-
 std::string_view name_of(const aiNode& node) {
   return {node.mName.data, node.mName.length};
 }
@@ -81,20 +72,37 @@ NodeMatrix as_double(const aiMatrix4x4& matrix) {
           matrix.c1, matrix.c2, matrix.c3, matrix.c4, matrix.d1, matrix.d2, matrix.d3, matrix.d4};
 }
 
-double animation_seconds(const aiScene& scene) {
-  if (scene.mNumAnimations == 0 || scene.mAnimations[0] == nullptr) return 0;
-  const double seconds = scene.mAnimations[0]->mDuration / ticks_per_second(*scene.mAnimations[0]);
+double seconds_of(const aiAnimation& animation) {
+  const double seconds = animation.mDuration / ticks_per_second(animation);
   constexpr double kMostSeconds = 1e6;
   return std::isfinite(seconds) ? std::clamp(seconds, 0.0, kMostSeconds) : 0;
 }
 
-NodePose::NodePose(const aiScene& scene, std::optional<double> moment) {
-  Channels channels;
-  double time = 0;
-  if (moment && scene.mNumAnimations != 0) {
-    channels = channels_of(scene);
-    time = *moment * animation_seconds(scene) * ticks_per_second(*scene.mAnimations[0]);
+Movement movement_of(const aiScene& scene, unsigned index, double seconds) {
+  const aiAnimation& animation = *scene.mAnimations[index];
+  std::unordered_map<std::string_view, const aiNodeAnim*> channels;
+  for (unsigned i = 0; i < animation.mNumChannels; ++i) {
+    const aiNodeAnim* const channel = animation.mChannels[i];
+    channels.emplace(std::string_view(channel->mNodeName.data, channel->mNodeName.length), channel);
   }
+  const double time = seconds * ticks_per_second(animation);
+  Movement movement;
+  std::vector<const aiNode*> waiting;
+  if (scene.mRootNode != nullptr) waiting.push_back(scene.mRootNode);
+  while (!waiting.empty() && movement.parent_from_node.size() <= kMostNodes) {
+    const aiNode& node = *waiting.back();
+    waiting.pop_back();
+    if (const auto channel = channels.find(name_of(node)); channel != channels.end()) {
+      movement.parent_from_node.emplace(&node, as_double(matrix_of(*channel->second, node.mTransformation, time)));
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) {
+      if (node.mChildren[i] != nullptr) waiting.push_back(node.mChildren[i]);
+    }
+  }
+  return movement;
+}
+
+NodePose::NodePose(const aiScene& scene, Movement movement) : movement_(std::move(movement)) {
   struct Waiting {
     const aiNode* node;
     NodeMatrix world_from_parent;
@@ -105,10 +113,11 @@ NodePose::NodePose(const aiScene& scene, std::optional<double> moment) {
     const Waiting next = waiting.back();
     waiting.pop_back();
     if (nodes_.size() >= kMostNodes) throw ImportError("has more than " + std::to_string(kMostNodes) + " nodes");
-    const auto channel = channels.find(name_of(*next.node));
-    const aiMatrix4x4& at_rest = next.node->mTransformation;
-    const NodeMatrix own = as_double(channel == channels.end() ? at_rest : matrix_of(*channel->second, at_rest, time));
+    const auto moved = movement_.parent_from_node.find(next.node);
+    const bool is_moved = moved != movement_.parent_from_node.end();
+    const NodeMatrix own = is_moved ? moved->second : as_double(next.node->mTransformation);
     by_name_.emplace(name_of(*next.node), nodes_.size());
+    by_node_.emplace(next.node, nodes_.size());
     nodes_.push_back({next.node, next.world_from_parent * own});
     for (unsigned i = next.node->mNumChildren; i-- > 0;) {
       if (next.node->mChildren[i] != nullptr)
@@ -117,9 +126,18 @@ NodePose::NodePose(const aiScene& scene, std::optional<double> moment) {
   }
 }
 
-const NodeMatrix* NodePose::find(std::string_view name) const {
-  const auto found = by_name_.find(name);
+const NodeMatrix* NodePose::find(const aiBone& bone) const {
+  if (const auto found = by_node_.find(bone.mNode); bone.mNode != nullptr && found != by_node_.end()) {
+    return &nodes_[found->second].world_from_node;
+  }
+  const auto found = by_name_.find(std::string_view(bone.mName.data, bone.mName.length));
   return found == by_name_.end() ? nullptr : &nodes_[found->second].world_from_node;
+}
+
+float NodePose::weight_of(const aiNode& node, const aiMesh& mesh, unsigned target) const {
+  if (!movement_.has_weights) return mesh.mAnimMeshes[target]->mWeight;
+  const auto found = movement_.weights.find(&node);
+  return found != movement_.weights.end() && target < found->second.size() ? found->second[target] : 0.0f;
 }
 
 }  // namespace gridiron::tool

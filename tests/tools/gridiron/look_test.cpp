@@ -124,6 +124,29 @@ TEST(CreaseNormals, TakeWhatHasNoArea) {
   for (const Vec3& normal : made.normals) EXPECT_NEAR(glm::length(normal), 1, 1e-6);
 }
 
+// As many materials as there may be, each with a triangle that has colours: there is no room for half of them again.
+TEST(Look, ColoursWithoutAMaterialAreCounted) {
+  constexpr std::uint32_t kMaterials = 40000, kRoom = tool::kMostSceneMaterials - 1 - kMaterials;
+  TestMesh triangles;
+  for (std::uint32_t i = 0; i < kMaterials; ++i) {
+    const float x = static_cast<float>(i) / 4096;
+    triangles.append(make_triangle({x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}));
+  }
+  const auto colorless = [&](std::uint32_t materials) {
+    SceneInput input = input_of(triangles);
+    tool::MeshSurface& surface = std::get<tool::Mesh>(input.content).surface;
+    surface.materials.resize(materials);
+    surface.colors = {Vec3(1, 0, 0)};
+    surface.triangle_colors.assign(kMaterials, UVec3(0));
+    for (std::uint32_t i = 0; i < kMaterials; ++i) {
+      surface.triangle_materials.push_back(static_cast<std::uint16_t>(i % materials));
+    }
+    return with_look(std::move(input), {.is_studio = true}).colorless_triangles;
+  };
+  EXPECT_EQ(colorless(kMaterials), kMaterials - kRoom);
+  EXPECT_EQ(colorless(100), 0u);
+}
+
 // Each part alone calls for its own effect and nothing else.
 TEST(Look, PartsCallForTheirEffects) {
   constexpr std::uint32_t kPlain = kSceneShading | kPointShadows | kHighlights;  // of the light at the eye

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "base/failure.h"
+#include "gltf_writer.h"
 #include "model_files.h"
 #include "support/sanitizers.h"
 #include "temporary_folder.h"
@@ -181,6 +182,51 @@ TEST(HostileModels, DamagedFilesAreNoDanger) {
       }
       (void)error_of_file(file.name, content);
     }
+  }
+}
+
+// Skin, morph targets, animation, integers, sparse numbers.
+std::string moving_gltf() {
+  GltfWriter writer;
+  const std::vector<float> corners = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const std::size_t place_view = writer.add_view("\1\0", 2), value_view = writer.add_view(corners.data(), 12);
+  (void)writer.add(std::vector<std::int16_t>{0, 0, 0, 9, 0, 0, 0, 9, 0}, kGltfShort, "VEC3", 3);
+  (void)writer.add_accessor(writer.add_view(corners.data(), 36), kGltfFloat, "VEC3", 3,
+                            ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":" + std::to_string(place_view) +
+                                ",\"componentType\":5121},\"values\":{\"bufferView\":" + std::to_string(value_view) +
+                                "}}");
+  (void)writer.add(std::vector<std::uint8_t>(12, 0), kGltfUnsignedByte, "VEC4", 3);
+  (void)writer.add(std::vector<std::uint8_t>(12, 60), kGltfUnsignedByte, "VEC4", 3, ",\"normalized\":true");
+  (void)writer.add(std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, kGltfFloat, "MAT4", 1);
+  (void)writer.add_floats({0, 1}, "SCALAR", 1);
+  (void)writer.add_floats({0, 0, 0, 0, 1, 0}, "SCALAR", 1);
+  (void)writer.add_floats({0, 0, 0, 1, 0, 0, 1, 0}, "VEC4", 4);
+  return writer.text(
+      "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1,2],\"mesh\":0},{\"mesh\":0,\"skin\":0},{}],\"skins\":[{"
+      "\"joints\":[2],\"inverseBindMatrices\":4}],\"meshes\":[{\"weights\":[1],\"primitives\":[{\"attributes\":{"
+      "\"POSITION\":0,\"JOINTS_0\":2,\"WEIGHTS_0\":3},\"targets\":[{\"POSITION\":1}]}]}],\"animations\":[{\"channels\":"
+      "[{"
+      "\"sampler\":0,\"target\":{\"node\":0,\"path\":\"weights\"}},{\"sampler\":1,\"target\":{\"node\":2,\"path\":"
+      "\"rotation\"}}],\"samplers\":[{\"input\":5,\"output\":6,\"interpolation\":\"CUBICSPLINE\"},{\"input\":5,"
+      "\"output\":7}]}]");
+}
+
+TEST(HostileModels, DamagedAnimationsAreNoDanger) {
+  tool::ImportOptions options = kLimits;
+  options.moment = 0.5;
+  const std::string good = moving_gltf();
+  EXPECT_EQ(error_of(TemporaryFolder("a.gltf", good), "a.gltf", options), "");
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    TestRandom random(seed);
+    std::string content = good;
+    for (std::uint64_t i = 0; i <= seed % 5; ++i) {
+      // A digit, so that the text stays one of glTF.
+      const std::size_t place =
+          content.find_first_of("0123456789", random.below(static_cast<std::uint32_t>(good.size())));
+      if (place != std::string::npos) content[place] = static_cast<char>('0' + random.below(10));
+    }
+    (void)error_of(TemporaryFolder("a.gltf", content), "a.gltf", options);
   }
 }
 

@@ -255,7 +255,8 @@ TEST(Import, AnimationsMoveNodes) {
   const TemporaryFolder folder("a.gltf", json);
   for (const double moment : {0.0, 0.25, 1.0}) {
     const tool::ImportedModel model = import_file(folder.path("a.gltf"), {.moment = moment});
-    EXPECT_EQ(model.report.animation_seconds, 1.0);
+    ASSERT_EQ(model.report.animations.size(), 1u);
+    EXPECT_EQ(model.report.animations[0].seconds, 1.0);
     const tool::Mesh& mesh = model.mesh;
     expect_near(mesh.vertices[mesh.triangles[0].x], Vec3(4.0f * static_cast<float>(moment), 0, 0));
   }

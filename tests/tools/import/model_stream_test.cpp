@@ -11,8 +11,8 @@ using tool::ImportedModel;
 
 ImportedModel example() {
   ImportedModel model;
-  model.report = {.format = "OBJ", .reader = "a reader", .frame = "y up", .meshes = 2, .animation_seconds = 1.5,
-                  .ignored = {"3 lines"}};
+  model.report = {.format = "OBJ", .reader = "a reader", .unit_metres = 0.01, .up = "y", .meshes = 2,
+                  .textures = 3, .animations = {{"walk", 1.5}, {"", 0}}, .ignored = {"3 lines"}};
   model.neighbours = {{"a.mtl", 77}};
   model.mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   model.mesh.triangles = {{0, 1, 2}, {2, 1, 0}};
@@ -60,6 +60,11 @@ TEST(ModelStream, WhatIsWrittenIsRead) {
   EXPECT_EQ(got.mesh.triangles, expected.mesh.triangles);
   EXPECT_EQ(got.mesh.surface.materials, expected.mesh.surface.materials);
   EXPECT_EQ(got.neighbours.at(0).content, 77u);
+  EXPECT_EQ(got.report.animations.at(0).name, "walk");
+  EXPECT_EQ(got.report.animations.at(0).seconds, 1.5);
+  EXPECT_EQ(got.report.unit_metres, 0.01);
+  EXPECT_EQ(got.report.up, "y");
+  EXPECT_EQ(got.report.textures, 3u);
 }
 
 TEST(ModelStream, ReasonsAreThrown) {
@@ -104,7 +109,9 @@ TEST(ModelStream, WrongNumbersAreRefused) {
       [](ImportedModel& m) { m.mesh.surface.materials[0].color.y = 2; },
       [](ImportedModel& m) { m.mesh.surface.materials[0].shine = 1e9f; },
       [](ImportedModel& m) { m.mesh.surface.materials[0].index_of_refraction = 0; },
-      [nan](ImportedModel& m) { m.report.animation_seconds = nan; }};
+      [nan](ImportedModel& m) { m.report.animations[1].seconds = nan; },
+      [](ImportedModel& m) { m.report.animations[0].seconds = -1; },
+      [nan](ImportedModel& m) { m.report.unit_metres = nan; }};
   EXPECT_FALSE(is_refused(example()));
   for (std::size_t i = 0; i < std::size(damages); ++i) {
     ImportedModel model = example();

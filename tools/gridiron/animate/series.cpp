@@ -89,9 +89,10 @@ SceneInput Series::read(SeriesFrame& frame) const {
   const InputHash hash;
   ImportOptions model = request_.scene.model;
   model.moment = frame.moment;
+  model.animation = animate_.clip;
   SceneInput input = read_scene_input(frame.input, request_.scene.tolerance,
                                       PictureRequest{request_.view, camera_, request_.size}, kExpected, model);
-  if (frame.moment && (!input.model || input.model->animation_seconds == 0)) {
+  if (frame.moment && (!input.model || input.model->animations.empty())) {
     input_error(frame.input, "has no animation, which --animation shows");
   }
   require_kind(frame.input, std::holds_alternative<PackedScene>(input.content));
@@ -193,7 +194,10 @@ MadeFrame Series::make(std::size_t i, bool has_timeline, const FrameProgress& pr
   request.view = frame.framed.value_or(request_.view);
   RequestedFrame requested = complete_frame(request, std::move(input), camera_, bounds_ ? &*bounds_ : nullptr);
   choose_builder(animate_, requested.plan);
-  if (has_told_ && !frame.moment && !request.scene.quiet) tell_notes(requested.input);
+  if (has_told_ && !frame.moment && !request.scene.quiet) {
+    // Meshes of this program's own format lose nothing that would differ from frame to frame.
+    tell_notes(requested.input, /*tells_model=*/requested.input.model && !requested.input.model->reader.empty());
+  }
   if (!std::exchange(has_told_, true)) tell_frame_notes(request, requested);
   FrameMemory memory(frame_memory_bytes(requested.input, requested.plan));
   if (!animate_.keeps_vertex_order) memory.vertex_order = &vertex_order_;

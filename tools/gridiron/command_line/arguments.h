@@ -23,6 +23,7 @@ struct AnimateRequest {
   std::optional<std::filesystem::path> path;  ///< of the camera
   std::optional<std::uint32_t> turntable;     ///< frames of a camera that goes around once
   std::optional<std::uint32_t> animation;     ///< frames of the input's own animation, from its begin to its end
+  std::string clip;                           ///< that animation's name or number; empty: the first
   std::optional<std::filesystem::path> film;
   std::optional<std::filesystem::path> timeline;  ///< of the first frame
   std::optional<float> frames_per_second;         ///< of the film; nothing: kUsualFramesPerSecond

@@ -135,6 +135,7 @@ void complete_animation(AnimateRequest& animate, const std::string& machine) {
   if (animate.animation && is_stream(input_path(animate.inputs.front()))) {
     usage_error("--animation: reads the model once for each frame, which a stream cannot give");
   }
+  if (!animate.clip.empty() && !animate.animation) usage_error("--clip: is of --animation");
   if (animate.frames_per_second && !animate.film) usage_error("--fps: is of --film");
   if (animate.timeline && animate.resume) usage_error("--timeline: is not made again by --resume");
   std::vector<NamedFile> inputs = {{"--camera", render.camera}, {"--path", animate.path}, machine_file(machine)};
@@ -202,8 +203,11 @@ Finish add_animate(CLI::App& app) {
   add_count(app, "--turntable", animate.turntable, 1, kMostFrames,
             "the camera goes once around the up axis in so many frames");
   add_count(app, "--animation", animate.animation, 1, kMostFrames,
-            "the first animation of the one model (glTF and others) in so many frames, the first and the last moment "
-            "among them");
+            "an animation of the one model (glTF and others) in so many frames, the first and the last moment among "
+            "them");
+  const auto any_text = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
+  add_parsed(app, "--clip", animate.clip, any_text, "a name or a number", "NAME|NUMBER",
+             "which of the model's animations --animation shows (default 1, the first)");
   add_output(app, "--film", animate.film, {"mp4", "webm", "gif"},
              "film of all pictures, .mp4, .webm or .gif; needs ffmpeg");
   const auto rate = [](const std::string& text) {

@@ -109,7 +109,8 @@ Material material_with(SceneMaterial material, bool is_smooth) {
 }
 
 // Materials of all triangles: each one of the file twice, the second with colours at vertices.
-void give_materials(const Mesh& mesh, const LookRequest& request, bool is_smooth, SceneEffects& effects) {
+// @returns triangles whose colours are left out, because there are too many materials.
+std::uint64_t give_materials(const Mesh& mesh, const LookRequest& request, bool is_smooth, SceneEffects& effects) {
   const MeshSurface& surface = mesh.surface;
   const std::size_t count = mesh.triangles.size();
   if (request.color || surface.is_empty() || (surface.triangle_materials.empty() && surface.triangle_colors.empty())) {
@@ -117,15 +118,16 @@ void give_materials(const Mesh& mesh, const LookRequest& request, bool is_smooth
     if (request.color) plain.color = *request.color;
     effects.materials = {material_with(plain, is_smooth)};
     effects.triangle_materials.assign(count, 0);
-    return;
+    return 0;
   }
   std::vector<SceneMaterial> own = surface.materials;
   if (surface.triangle_materials.empty()) own = {kPlain};
   effects.triangle_materials = surface.triangle_materials;
   effects.triangle_materials.resize(count, 0);
   for (const SceneMaterial& material : own) effects.materials.push_back(material_with(material, is_smooth));
-  if (surface.triangle_colors.empty()) return;
+  if (surface.triangle_colors.empty()) return 0;
 
+  std::uint64_t left_out = 0;
   effects.colors = surface.colors;
   effects.triangle_colors = surface.triangle_colors;
   std::vector<std::uint32_t> colored(own.size(), kNoNormal);
@@ -135,6 +137,7 @@ void give_materials(const Mesh& mesh, const LookRequest& request, bool is_smooth
     if (index == kNoNormal) {
       if (effects.materials.size() + 1 >= kMostSceneMaterials) {  // left with that of its material; one is the ground's
         effects.triangle_colors[i] = UVec3(kNoNormal);
+        ++left_out;
         continue;
       }
       Material material = effects.materials[effects.triangle_materials[i]];
@@ -145,6 +148,7 @@ void give_materials(const Mesh& mesh, const LookRequest& request, bool is_smooth
     }
     effects.triangle_materials[i] = static_cast<std::uint16_t>(index);
   }
+  return left_out;
 }
 
 // --- Ground and lights -----------------------------------------------------------------------------------------------
@@ -342,7 +346,7 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
   const bool has_colors = !request.color && !mesh.surface.triangle_colors.empty();
   const bool is_smooth = degrees.value_or(has_own_normals ? 1.0f : 0.0f) > 0.0f || has_colors;
   if (is_smooth) give_normals(mesh, degrees, is_studio, effects);
-  give_materials(mesh, request, is_smooth, effects);
+  input.colorless_triangles = give_materials(mesh, request, is_smooth, effects);
 
   effects.occlusion_samples = request.occlusion.value_or(is_studio ? kStudioOcclusion : 0);
   const bool has_occlusion = effects.occlusion_samples != 0;

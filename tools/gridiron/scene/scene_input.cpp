@@ -147,26 +147,15 @@ void read_model(InputFile file, const ImportRequest& request, SceneInput& input)
   input.model = std::move(model.report);
 }
 
-// "a, b and c".
-std::string words_of_list(const std::vector<std::string>& words) {
-  std::string list;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    list += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
-  }
-  return list;
-}
-
 void tell_model(const SceneInput& input) {
   const ImportReport& report = *input.model;
   const Mesh& mesh = std::get<Mesh>(input.content);
-  std::string words = report.format + ", " + words_of_count(report.meshes) + (report.meshes == 1 ? " mesh" : " meshes");
-  if (!mesh.surface.materials.empty()) words += ", " + words_of_count(mesh.surface.materials.size(), "material");
+  // A mesh of this program's own format is worth a line for what a frame without a look does not show.
+  if (report.reader.empty() && mesh.surface.is_empty()) return;
   // A look has added a ground to the model's own triangles.
-  if (!input.effects) words += ", " + words_of_count(mesh.triangles.size(), "triangle");
-  if (!mesh.surface.triangle_normals.empty()) words += ", normals";
-  if (!mesh.surface.triangle_colors.empty()) words += ", colours";
-  if (!report.frame.empty()) words += "; " + report.frame;
-  std::fprintf(stderr, "%s: %s; read with %s\n", input.path.c_str(), words.c_str(), report.reader.c_str());
+  const std::optional<std::uint64_t> triangles =
+      input.effects ? std::nullopt : std::optional<std::uint64_t>(mesh.triangles.size());
+  std::fprintf(stderr, "%s: %s\n", input.path.c_str(), words_of_model(report, mesh, triangles).c_str());
   if (report.ignored.empty()) return;
   std::fprintf(stderr, "%s: ignored: %s\n", input.path.c_str(), words_of_list(report.ignored).c_str());
 }
@@ -176,6 +165,20 @@ void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
 }
 
 }  // namespace
+
+std::string words_of_model(const ImportReport& report, const Mesh& mesh, std::optional<std::uint64_t> triangles) {
+  std::string words = report.format;
+  if (!report.reader.empty())
+    words += ", " + words_of_count(report.meshes) + (report.meshes == 1 ? " mesh" : " meshes");
+  if (!mesh.surface.materials.empty()) words += ", " + words_of_count(mesh.surface.materials.size(), "material");
+  if (report.textures != 0) words += ", " + words_of_count(report.textures, "texture");
+  if (triangles) words += ", " + words_of_count(*triangles, "triangle");
+  if (!mesh.surface.triangle_normals.empty()) words += ", normals";
+  if (!mesh.surface.triangle_colors.empty()) words += ", colours";
+  if (const std::string frame = words_of_frame(report); !frame.empty()) words += "; " + frame;
+  if (!report.reader.empty()) words += "; read with " + report.reader;
+  return words;
+}
 
 SceneKind foreseen_kind(const std::filesystem::path& path) {
   if (is_stream(path)) return SceneKind::kUnknown;
@@ -251,6 +254,9 @@ SceneInput read_scene_input(const std::filesystem::path& path, std::optional<flo
       read_model(std::move(file), {.path = path, .ending = ending, .options = model_options}, input);
     } else if (kind == SceneKind::kMesh) {
       input.content = read_ply_mesh(file.bytes, path);
+      input.model.emplace();
+      input.model->format = "PLY";
+      input.model->meshes = 1;
     } else if (kind == SceneKind::kPacked) {
       input.content = open_packed_scene(std::move(file), path);
     } else {
@@ -261,8 +267,13 @@ SceneInput read_scene_input(const std::filesystem::path& path, std::optional<flo
   return input;
 }
 
-void tell_notes(const SceneInput& input) {
-  if (input.model) tell_model(input);
+void tell_notes(const SceneInput& input, bool tells_model) {
+  if (input.model && tells_model) tell_model(input);
+  if (input.colorless_triangles != 0) {
+    std::fprintf(stderr, "%s: the own colours of %s are left out: a look has %s materials at most\n",
+                 input.path.c_str(), words_of_count(input.colorless_triangles, "triangle").c_str(),
+                 words_of_count(kMostSceneMaterials).c_str());
+  }
   if (!input.text) return;
   for (const SceneNote& note : input.text->notes) {
     std::fprintf(stderr, "%s:%llu: note: %s\n", input.path.c_str(), static_cast<unsigned long long>(note.line),

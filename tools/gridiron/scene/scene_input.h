@@ -48,7 +48,8 @@ struct SceneInput {
   HostSeconds load_seconds{};             ///< of reading and checking
   std::optional<SceneEffects> effects{};  ///< beside a Mesh: of a text scene, or of a look
   std::optional<TextScene> text{};        ///< beside a Mesh and its effects
-  std::optional<ImportReport> model{};    ///< of a Mesh that Assimp has read
+  std::optional<ImportReport> model{};    ///< of a Mesh of no text scene
+  std::uint64_t colorless_triangles = 0;  ///< whose colours a look has no material for
 };
 
 inline constexpr const char* kSceneExpected =
@@ -92,9 +93,14 @@ void require_renderable(const SceneInput& input);
                                           const char* expected = kSceneExpected,
                                           const ImportOptions& model_options = {});
 
+/// @returns "glTF, 4 meshes, 2 materials, 5,120 triangles, normals; in metres, y up; read with Assimp 5.2.4".
+/// @param triangles  nothing: not said.
+[[nodiscard]] std::string words_of_model(const ImportReport& report, const Mesh& mesh,
+                                         std::optional<std::uint64_t> triangles);
+
 /// Prints notes of a text scene on standard error: `file:line: note: text`, one line each; and the tolerance that the
-/// picture has chosen. Of a model: what was read, and what was ignored.
-void tell_notes(const SceneInput& input);
+/// picture has chosen. Of a mesh: what a look leaves out, and, unless tells_model is false, what was read and ignored.
+void tell_notes(const SceneInput& input, bool tells_model = true);
 
 /// @returns the mesh of a PLY file. Errors as read_scene_input. @param path  what messages call the bytes.
 [[nodiscard]] Mesh read_ply_mesh(const std::filesystem::path& path);
