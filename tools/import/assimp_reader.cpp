@@ -316,8 +316,7 @@ void tell_scene(const aiScene& scene, const ModelMaterials& materials, const Ass
   }
   constexpr std::size_t kMostNames = 5;
   for (std::size_t i = 0; i < std::min(kMostNames, materials.unread_textures().size()); ++i) {
-    ignored.push_back("the texture " + in_quotes(materials.unread_textures()[i]) +
-                      ", which is missing or cannot be read");
+    ignored.push_back("the texture " + materials.unread_textures()[i]);
   }
   std::size_t named = 0;
   for (const std::string& path : files.missing()) {

@@ -196,17 +196,23 @@ void ModelMaterials::read_texture(const aiMaterial& source, ModelMaterial& resul
 const Texture* ModelMaterials::find_texture(const std::string& name) {
   auto found = textures_.find(name);
   if (found == textures_.end()) {
-    found = textures_.emplace(name, load_texture(name)).first;
-    if (!found->second) unread_.push_back(name);
+    std::string reason = "is missing or cannot be read";
+    found = textures_.emplace(name, load_texture(name, reason)).first;
+    if (!found->second) unread_.push_back(in_quotes(name) + ", which " + reason);
   }
   return found->second ? &*found->second : nullptr;
 }
 
-std::optional<Texture> ModelMaterials::load_texture(const std::string& name) {
+std::optional<Texture> ModelMaterials::load_texture(const std::string& name, std::string& reason) {
+  const auto decode = [&reason](std::span<const std::byte> file) {
+    if (const auto option = Texture::missing_option(file)) {
+      reason = "this build of gridiron cannot read (" + std::string(*option) + "=OFF)";
+    }
+    return Texture::decode(file);
+  };
   if (const aiTexture* const embedded = scene_.GetEmbeddedTexture(name.c_str())) {
     if (embedded->mHeight == 0) {
-      return Texture::decode(
-          std::as_bytes(std::span(reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth)));
+      return decode(std::as_bytes(std::span(reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth)));
     }
     const std::uint64_t count = std::uint64_t{embedded->mWidth} * embedded->mHeight;
     if (count == 0 || embedded->mWidth > Texture::kMostWidth || embedded->mHeight > Texture::kMostWidth)
@@ -224,7 +230,7 @@ std::optional<Texture> ModelMaterials::load_texture(const std::string& name) {
   for (const std::string& each : {path, without_percents(path)}) {
     const std::string whole = (folder / each).string();
     if (!files_.Exists(whole.c_str())) continue;
-    if (const auto bytes = files_.read(whole)) return Texture::decode(*bytes);
+    if (const auto bytes = files_.read(whole)) return decode(*bytes);
   }
   return std::nullopt;
 }

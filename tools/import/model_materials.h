@@ -34,7 +34,7 @@ class ModelMaterials {
   [[nodiscard]] const ModelMaterial& of(unsigned index) const;
 
   [[nodiscard]] std::size_t other_texture_count() const { return other_textures_; }
-  /// Textures of base colours that are damaged, or of kinds that are not read.
+  /// Textures of base colours that are damaged, or of kinds that are not read: the name in quotes, and why.
   [[nodiscard]] const std::vector<std::string>& unread_textures() const { return unread_; }
   /// Materials with a highlight that is left out, because ours comes with a mirror.
   [[nodiscard]] std::size_t dropped_highlight_count() const { return dropped_highlights_; }
@@ -43,7 +43,8 @@ class ModelMaterials {
   [[nodiscard]] ModelMaterial read(unsigned index);
   void read_texture(const aiMaterial& material, ModelMaterial& result);
   [[nodiscard]] const Texture* find_texture(const std::string& name);
-  [[nodiscard]] std::optional<Texture> load_texture(const std::string& name);
+  /// @param reason  why there is none, if there is none
+  [[nodiscard]] std::optional<Texture> load_texture(const std::string& name, std::string& reason);
 
   const aiScene& scene_;
   ModelFormat format_;
