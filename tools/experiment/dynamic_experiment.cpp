@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "base/words.h"
 #include "experiment/bvh_system.h"
@@ -50,15 +51,19 @@ struct Subject {
 // Rising in triangles; of views of one mesh the first.
 std::vector<Subject> make_subjects(const FoundViews& found, std::uint32_t largest_knot) {
   std::vector<Subject> subjects;
+  const auto add = [&subjects](const View& view) {
+    Subject subject{view};
+    const auto place = std::ranges::upper_bound(subjects, subject.triangles(), {}, &Subject::triangles);
+    subjects.insert(place, std::move(subject));
+  };
   for (const std::uint32_t count : kKnotSizes) {
     tool::stop_if_interrupted();
-    if (count <= largest_knot) subjects.push_back({make_knot_view(count)});
+    if (count <= largest_knot) add(make_knot_view(count));
   }
   std::set<const tool::SceneInput*> known;
   for (const View& view : found.views) {
-    if (known.insert(view.scene.get()).second) subjects.push_back({view});
+    if (known.insert(view.scene.get()).second) add(view);
   }
-  std::ranges::stable_sort(subjects, {}, &Subject::triangles);
   return subjects;
 }
 

@@ -158,7 +158,7 @@ void ModelMaterials::tell(std::vector<std::string>& ignored) const {
   add(transforms_, "shifted or scaled textures");
   constexpr std::size_t kMostNames = 5;
   for (std::size_t i = 0; i < std::min(kMostNames, unread_.size()); ++i) {
-    ignored.push_back("the texture " + in_quotes(unread_[i]) + ", which is missing or cannot be read");
+    ignored.push_back("the texture " + unread_[i]);
   }
 }
 
@@ -267,17 +267,23 @@ void ModelMaterials::read_gltf_places(const Json& texture, ModelMaterial& result
 const Texture* ModelMaterials::find_texture(const std::string& name) {
   auto found = textures_.find(name);
   if (found == textures_.end()) {
-    found = textures_.emplace(name, load_texture(name)).first;
-    if (!found->second) unread_.push_back(name);
+    std::string reason = "is missing or cannot be read";
+    found = textures_.emplace(name, load_texture(name, reason)).first;
+    if (!found->second) unread_.push_back(in_quotes(name) + ", which " + reason);
   }
   return found->second ? &*found->second : nullptr;
 }
 
-std::optional<Texture> ModelMaterials::load_texture(const std::string& name) {
+std::optional<Texture> ModelMaterials::load_texture(const std::string& name, std::string& reason) {
+  const auto decode = [&reason](std::span<const std::byte> file) {
+    if (const auto option = Texture::missing_option(file)) {
+      reason = "this build of gridiron cannot read (" + std::string(*option) + "=OFF)";
+    }
+    return Texture::decode(file);
+  };
   if (const aiTexture* const embedded = scene_.GetEmbeddedTexture(name.c_str())) {
     if (embedded->mHeight == 0) {
-      return Texture::decode(
-          std::as_bytes(std::span(reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth)));
+      return decode(std::as_bytes(std::span(reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth)));
     }
     const std::uint64_t count = std::uint64_t{embedded->mWidth} * embedded->mHeight;
     if (count == 0 || embedded->mWidth > Texture::kMostWidth || embedded->mHeight > Texture::kMostWidth)
@@ -295,7 +301,7 @@ std::optional<Texture> ModelMaterials::load_texture(const std::string& name) {
   const std::string whole = (folder / path).string();
   if (!files_.Exists(whole.c_str())) return std::nullopt;  // a texture has its own words where it is missing
   const auto bytes = files_.read(whole);
-  return bytes ? Texture::decode(*bytes) : std::nullopt;
+  return bytes ? decode(*bytes) : std::nullopt;
 }
 
 }  // namespace gridiron::tool

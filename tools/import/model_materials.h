@@ -54,7 +54,8 @@ class ModelMaterials {
   void read_gltf_places(const Json& texture, ModelMaterial& result) const;
   void count_ignored(const aiMaterial& material);
   [[nodiscard]] const Texture* find_texture(const std::string& name);
-  [[nodiscard]] std::optional<Texture> load_texture(const std::string& name);
+  /// @param reason  why there is none, if there is none.
+  [[nodiscard]] std::optional<Texture> load_texture(const std::string& name, std::string& reason);
 
   const aiScene& scene_;
   ModelFormat format_;

@@ -20,6 +20,12 @@
 namespace gridiron::tool {
 namespace {
 
+constexpr std::string_view kPngMagic = "\x89PNG", kJpegMagic = "\xFF\xD8\xFF";
+
+bool starts_with(std::span<const std::byte> file, std::string_view magic) {
+  return file.size() > magic.size() && std::memcmp(file.data(), magic.data(), magic.size()) == 0;
+}
+
 [[maybe_unused]] bool is_fit(std::uint64_t width, std::uint64_t height) {
   return width >= 1 && height >= 1 && width <= Texture::kMostWidth && height <= Texture::kMostWidth;
 }
@@ -100,15 +106,22 @@ std::int64_t wrapped(std::int64_t index, std::int64_t count, Wrap wrap) {
 
 }  // namespace
 
-std::optional<Texture> Texture::decode(std::span<const std::byte> file) {
-  [[maybe_unused]] const auto starts_with = [file](std::string_view magic) {
-    return file.size() > magic.size() && std::memcmp(file.data(), magic.data(), magic.size()) == 0;
-  };
+std::optional<Texture> Texture::decode([[maybe_unused]] std::span<const std::byte> file) {
 #ifdef GRIDIRON_HAS_PNG
-  if (starts_with("\x89PNG")) return decode_png(file);
+  if (starts_with(file, kPngMagic)) return decode_png(file);
 #endif
 #ifdef GRIDIRON_HAS_JPEG
-  if (starts_with("\xFF\xD8\xFF")) return decode_jpeg(file);
+  if (starts_with(file, kJpegMagic)) return decode_jpeg(file);
+#endif
+  return std::nullopt;
+}
+
+std::optional<std::string_view> Texture::missing_option([[maybe_unused]] std::span<const std::byte> file) {
+#ifndef GRIDIRON_HAS_PNG
+  if (starts_with(file, kPngMagic)) return "GRIDIRON_WITH_PNG";
+#endif
+#ifndef GRIDIRON_HAS_JPEG
+  if (starts_with(file, kJpegMagic)) return "GRIDIRON_WITH_JPEG";
 #endif
   return std::nullopt;
 }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "import/srgb.h"
@@ -24,6 +25,9 @@ class Texture {
   /// Decodes a PNG or JPEG file. @returns nothing if it is neither, damaged, too large, or of a kind that this build
   /// cannot read.
   [[nodiscard]] static std::optional<Texture> decode(std::span<const std::byte> file);
+
+  /// @returns the option of the build with which decode() would read such a file; nothing if it does, or none would.
+  [[nodiscard]] static std::optional<std::string_view> missing_option(std::span<const std::byte> file);
 
   /// @param rgb  sRGB, 3 bytes a texel, first row on top; width and height at least 1.
   Texture(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgb);

@@ -316,7 +316,11 @@ class Parser {
       result_.points.push_back(words_.take_point(entity));
       if (!has_normals) continue;
       const std::uint64_t line = words_.next().line;
-      const DVec3 normal(words_.take_point(entity));
+      // Not as floats in between: GCC 12 leaves out that rounding for two values at once (-O2 on x86-64).
+      DVec3 normal{};
+      for (int axis = 0; axis < 3; ++axis) {
+        normal[axis] = words_.take_in_range(entity, "a coordinate", -kMostSceneCoordinate, kMostSceneCoordinate);
+      }
       const double length = glm::length(normal);
       if (!(length > 1e-30)) words_.fail(line, "the normal of corner " + std::to_string(i + 1) + " has length 0");
       result_.points.push_back(Vec3(normal / length));

@@ -494,7 +494,7 @@ class TileBounder {
         }
         // Nothing was hit: what t_far or an error of 1 / t leaves open.
         if (!is_short || !(part.low > floor + apart)) part.open = part.possible;
-        if (is_short && ((seen & part.possible & ~part.open) != 0 || !part.is_in_order)) {
+        if (is_short && ((seen & part.possible & ~std::uint32_t{part.open}) != 0 || !part.is_in_order)) {
           const float low = part.low - apart, high = part.high + apart;
           for (std::size_t j = 0; j < i; ++j) {
             BlockPart& other = parts[j];

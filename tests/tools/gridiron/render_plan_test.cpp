@@ -151,7 +151,7 @@ TEST(RenderPlan, RefusesByWhatIsKnownOfTheScene) {
 TEST(RenderPlan, RefusesWhatTheHostCannotRun) {
   tool::RenderRequest request = render_request("grid");
   request.lanes = 16;
-  EXPECT_EQ(refusal(request), "--lanes: this host has at most 8 lanes");
+  EXPECT_EQ(refusal(request), "--lanes: this host and this build (GRIDIRON_WIDE_LANES) have at most 8 lanes");
   request.lanes.reset();
   request.mode = sim::Mode::kInstrumented;
   EXPECT_EQ(refusal(request), "--mode instrumented: this build has no instrumented kernel");

@@ -176,7 +176,10 @@ void check_request(const RenderRequest& request, const Host& host) {
   }
   if (has_timeline && lanes != 4) usage_error("--timeline: cycles are counted for --lanes 4 only");
   if (has_timeline && request.tile) usage_error("--timeline: cycles are not counted for one tile alone (--tile)");
-  if (lanes > host.lanes) usage_error("--lanes: this host has at most " + std::to_string(host.lanes) + " lanes");
+  if (lanes > host.lanes) {
+    usage_error("--lanes: this host and this build (GRIDIRON_WIDE_LANES) have at most " + std::to_string(host.lanes) +
+                " lanes");
+  }
   if (request.seed && request.completion != sim::Completion::kRandom) usage_error("--seed: needs --completion random");
 }
 

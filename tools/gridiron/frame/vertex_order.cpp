@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "base/content_hash.h"
 
@@ -68,7 +69,8 @@ Places by_space(const Mesh& mesh) {
     codes.push_back(code);
   }
   Places order = as_they_are(mesh), places(order.size());
-  std::ranges::stable_sort(order, {}, [&codes](std::uint32_t vertex) { return codes[vertex]; });
+  // Not stable_sort: newer clangs warn of what libstdc++ 12 does in it.
+  std::ranges::sort(order, {}, [&codes](std::uint32_t vertex) { return std::pair(codes[vertex], vertex); });
   for (std::uint32_t i = 0; i < order.size(); ++i) places[order[i]] = i;
   return places;
 }
