@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/failure.h"
+#include "experiment/result_bytes.h"
 #include "experiment/workers.h"
 #include "files/interrupt.h"
 
@@ -109,7 +110,19 @@ void Plan::execute(std::uint32_t threads, const std::function<void(std::uint32_t
     const std::lock_guard lock(mutex);
     progress(++done, total);
   };
-  share_work(threads, frames_.size(), [&](std::size_t i) { run_frame(frames_[i], run_done); });
+  const auto pack = [this](std::size_t i) {
+    tool::ByteWriter writer;
+    for (const Run& run : frames_[i].runs) add_run(writer, results_[run.id]);
+    return writer.take();
+  };
+  const auto unpack = [&](std::size_t i, const tool::Bytes& bytes) {
+    tool::ByteReader reader(bytes);
+    for (const Run& run : frames_[i].runs) {
+      take_run(reader, results_[run.id]);
+      run_done();
+    }
+  };
+  share_work(threads, frames_.size(), [&](std::size_t i) { run_frame(frames_[i], run_done); }, {pack, unpack});
 }
 
 }  // namespace gridiron::experiment
