@@ -14,7 +14,7 @@ class MpiFiles : public Mpi {
 // A picture with all its planes, the report with all its cycles, and the timeline: 12 tiles, the last row cut.
 TEST_F(MpiFiles, OfAPicture) {
   const Words files = {"-o", "OUT/a.png", "--depth", "OUT/d.pfm", "--ids", "OUT/i.pfm", "--report", "OUT/r.json"};
-  const Words common = Words{"render", "a.ply", "--size", "100x90", "--threads", "2"} + files;
+  const Words common = Words{"render", "a.ply", "--size", "200x170", "--threads", "2"} + files;
   expect_same_files(folder_, common + Words{"--timeline", "OUT/t.json.txt"});
   expect_same_files(folder_, common + Words{"--configuration", "reference", "--repeat", "2"});
   expect_same_files(folder_, common + Words{"--mode", "plain"});
@@ -29,7 +29,7 @@ TEST_F(MpiFiles, OfAPictureWithEffects) {
 // Fewer tiles than ranks, a single tile of many, and a packed scene, which is not built.
 TEST_F(MpiFiles, OfFewTiles) {
   expect_same_files(folder_, {"render", "a.ply", "--size", "16x16", "-o", "OUT/a.png", "--report", "OUT/r.json"});
-  expect_same_files(folder_, {"render", "a.ply", "--size", "96x96", "--tile", "1,2", "-o", "OUT/a.png"});
+  expect_same_files(folder_, {"render", "a.ply", "--size", "96x96", "--tile", "1,0", "-o", "OUT/a.png"});
   (void)run(folder_, {"pack", "a.ply", "-o", "a.scene"});
   expect_same_files(folder_, {"render", "a.scene", "--size", "96x96", "--repeat", "2", "-o", "OUT/a.png", "--report",
                               "OUT/r.json"});
