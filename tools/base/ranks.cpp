@@ -1,16 +1,13 @@
 // Ranks. SPDX-License-Identifier: Apache-2.0
 #include "ranks.h"
 
-#include <unistd.h>
-
 #include <utility>
 
 #include "failure.h"
+#include "patience.h"
 
 namespace gridiron::tool {
 namespace {
-
-constexpr useconds_t kPause = 200;  // microseconds between looks at the messages
 
 class SingleRank final : public Ranks {
  public:
@@ -21,8 +18,7 @@ class SingleRank final : public Ranks {
   [[nodiscard]] std::optional<RankMessage> poll() override { return std::nullopt; }
   void attend() override {}
   void broadcast(Bytes&) override {}
-  void share_bytes(std::span<std::byte>,
-                   const std::function<void(std::uint64_t, std::span<std::byte>)>&) override {}
+  void share_bytes(std::span<std::byte>, const std::function<void(std::uint64_t, std::span<std::byte>)>&) override {}
   [[nodiscard]] std::uint32_t usual_threads(std::uint32_t host_threads) const override { return host_threads; }
 };
 
@@ -31,10 +27,11 @@ Ranks* in_use = nullptr;
 }  // namespace
 
 RankMessage Ranks::wait_message() {
+  Patience patience;
   while (true) {
     if (std::optional<RankMessage> message = poll()) return std::move(*message);
     attend();
-    (void)::usleep(kPause);
+    patience.pause();
   }
 }
 

@@ -17,7 +17,7 @@ void share_work(std::uint32_t threads, std::size_t count, const std::function<vo
 
 /// Results of pieces of work as bytes, for other ranks.
 struct ResultBytes {
-  std::function<tool::Bytes(std::size_t)> pack;                ///< @returns the result of a piece
+  std::function<tool::Bytes(std::size_t)> pack;                 ///< @returns the result of a piece
   std::function<void(std::size_t, const tool::Bytes&)> unpack;  ///< takes the result of a piece of another rank
 };
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/content_hash.h"
+#include "base/patience.h"
 #include "base/stopwatch.h"
 #include "base/value_bytes.h"
 #include "base/words.h"
@@ -23,7 +24,6 @@ enum Tag : int { kHeadTag = 1, kPieceTag = 2, kFailureTag = 3 };
 
 constexpr std::uint64_t kPieceBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kSharedPieceBytes = std::size_t{64} << 20;
-constexpr useconds_t kPause = 200;  // microseconds between looks
 
 // Errors of MPI end the program by themselves unless they are returned.
 void check(int result, const char* doing) {
@@ -134,9 +134,10 @@ bool MpiRanks::has_told() {
 }
 
 void MpiRanks::flush() {
+  Patience patience;
   while (!has_told()) {
     attend();
-    (void)::usleep(kPause);
+    patience.pause();
   }
 }
 
@@ -200,12 +201,13 @@ std::optional<RankMessage> MpiRanks::poll() {
 }
 
 void MpiRanks::wait_for(MPI_Request& request) {
+  Patience patience;
   int done = 0;
   while (true) {
     check(MPI_Test(&request, &done, MPI_STATUS_IGNORE), "move a message");
     if (done != 0) return;
     attend();
-    (void)::usleep(kPause);
+    patience.pause();
   }
 }
 
@@ -310,10 +312,11 @@ void MpiRanks::report_failure(ExitCode code, const std::string& message) {
   MPI_Request request = MPI_REQUEST_NULL;
   (void)MPI_Isend(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, 0, kFailureTag, messages_, &request);
   const Stopwatch stopwatch;
+  Patience patience;
   while (stopwatch.seconds() < kPatienceSeconds) {
     int ignored = 0;
     (void)MPI_Test(&request, &ignored, MPI_STATUS_IGNORE);
-    (void)::usleep(1000);
+    patience.pause();
   }
   if (request != MPI_REQUEST_NULL) (void)MPI_Request_free(&request);
 }

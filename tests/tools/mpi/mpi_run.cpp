@@ -77,7 +77,8 @@ void expect_same_files(const TemporaryFolder& folder, const Words& arguments) {
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
   const ProgramResult ranks = run_shell(folder.folder(), ranks_line(3) + joined(arguments, "ranks"));
   ASSERT_EQ(ranks.exit_code, 0) << ranks.err;
-  const std::map<std::string, std::string> expected = files_of(folder.path("alone")), got = files_of(folder.path("ranks"));
+  const std::map<std::string, std::string> expected = files_of(folder.path("alone"));
+  const std::map<std::string, std::string> got = files_of(folder.path("ranks"));
   Words names, got_names;
   for (const auto& [name, bytes] : expected) names.push_back(name);
   for (const auto& [name, bytes] : got) got_names.push_back(name);
