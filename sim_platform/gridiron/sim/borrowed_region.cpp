@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <new>
 
 #if __has_include(<sys/mman.h>)
 #include <sys/mman.h>
@@ -21,10 +22,13 @@ bool borrow_bytes(const MemoryRegion& region, std::span<std::byte> shared) {
   const std::size_t front = static_cast<std::size_t>(round_up(address, page) - address);
   const std::size_t whole = bytes > front ? (bytes - front) / page * page : 0;
   if (whole != 0 && reinterpret_cast<std::uintptr_t>(shared.data() + front) % page == 0) {
-    // An old size of 0 maps the same pages once more.
-    void* const mapped = ::mremap(shared.data() + front, 0, whole, MREMAP_MAYMOVE | MREMAP_FIXED, own + front);
+    // An old size of 0 maps the same pages once more, anywhere: a failure at a fixed place may leave a hole there.
+    void* const mapped = ::mremap(shared.data() + front, 0, whole, MREMAP_MAYMOVE);
     if (mapped != MAP_FAILED) {
-      (void)::mprotect(mapped, whole, PROT_READ);
+      if (::mremap(mapped, whole, whole, MREMAP_MAYMOVE | MREMAP_FIXED, own + front) == MAP_FAILED) {
+        throw std::bad_alloc();
+      }
+      (void)::mprotect(own + front, whole, PROT_READ);
       std::memcpy(own, shared.data(), front);
       std::memcpy(own + front + whole, shared.data() + front + whole, bytes - front - whole);
       return true;

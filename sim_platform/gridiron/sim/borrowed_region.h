@@ -15,7 +15,8 @@ namespace gridiron::sim {
 ///
 /// Precondition: nothing that was allocated before the region's end is released any more, and nobody writes there.
 /// @param shared  of a mapping that processes share (MAP_SHARED).
-/// @returns whether pages are shared; false: all bytes were copied.
+/// @returns whether pages are shared; false: all bytes were copied. Errors: throws std::bad_alloc if the host has no
+/// place for another mapping; the region cannot be used then.
 bool borrow_bytes(const MemoryRegion& region, std::span<std::byte> shared);
 
 }  // namespace gridiron::sim

@@ -1,10 +1,11 @@
-// Ranks killed at random moments: the job ends, no picture is half written, and --resume completes it. Only where the
-// longer suites run (ctest label `full`). SPDX-License-Identifier: Apache-2.0
+// Ranks killed at random moments: the job ends, no picture is half written, and --resume completes it. A full disk.
+// Longer tests, of the ctest label `full`. SPDX-License-Identifier: Apache-2.0
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <random>
 #include <thread>
@@ -18,6 +19,11 @@ namespace fs = std::filesystem;
 
 class MpiKill : public Mpi {
  protected:
+  void SetUp() override {
+    if (std::getenv("GRIDIRON_MPI_LONG") == nullptr) GTEST_SKIP() << "a longer test: ctest -L full";
+    Mpi::SetUp();
+  }
+
   // Starts a line of the shell in a process of its own, its words going to `err`.
   [[nodiscard]] pid_t start(const std::string& line) {
     const pid_t process = ::fork();
@@ -39,7 +45,7 @@ class MpiKill : public Mpi {
   const TemporaryFolder folder_{"a.ply", make_sphere(60, 80, 1.0f)};
 };
 
-TEST_F(MpiKill, DISABLED_AtTenMomentsAndResumed) {
+TEST_F(MpiKill, AtTenMomentsAndResumed) {
   const std::string turn = " animate a.ply --turntable 12 --size 512x512 --threads 1 -o ";
   ASSERT_EQ(run_shell(folder_.folder(), "\"$GRIDIRON\"" + turn + "alone").exit_code, 0);
   const std::map<std::string, std::string> whole = files_of(folder_.path("alone"));
@@ -77,7 +83,7 @@ TEST_F(MpiKill, DISABLED_AtTenMomentsAndResumed) {
   EXPECT_EQ(files, whole);
 }
 
-TEST_F(MpiKill, DISABLED_AFullDiskEndsAnAnimation) {
+TEST_F(MpiKill, AFullDiskEndsAnAnimation) {
   const std::string mount = "mkdir -p disk && mount -t tmpfs -o size=64k none disk";
   const std::string line = "unshare -m bash -c \"" + mount + " && exec env " + ranks_line(3) +
                            " animate a.ply --turntable 12 --size 256x256 -o disk/out\"";
