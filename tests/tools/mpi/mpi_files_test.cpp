@@ -38,6 +38,7 @@ TEST_F(MpiFiles, OfFewTiles) {
 TEST_F(MpiFiles, OfACameraThatMoves) {
   expect_same_files(folder_, {"animate", "a.ply", "-o", "OUT", "--turntable", "5", "--size", "40x40", "--timeline",
                               "OUT/t.txt"});
+  expect_same_files(folder_, {"animate", kScenes + "/glass.nff", "-o", "OUT", "--turntable", "4", "--size", "24x24"});
 }
 
 TEST_F(MpiFiles, OfASeriesOfMeshes) {

@@ -67,6 +67,7 @@ void add_plan(ByteWriter& writer, const RenderPlan& plan) {
   writer.add(plan.height);
   writer.add(plan.tile);
   writer.add(plan.cores);
+  writer.add(plan.threads);
   writer.add(plan.lanes);
   writer.add(plan.layout);
   writer.add(plan.most_macro_width);
@@ -97,6 +98,7 @@ RenderPlan take_plan(ByteReader& reader, const RenderRequest& request) {
   reader.take(plan.height);
   reader.take(plan.tile);
   reader.take(plan.cores);
+  const auto threads_of_first = reader.take<std::uint32_t>();
   reader.take(plan.lanes);
   reader.take(plan.layout);
   reader.take(plan.most_macro_width);
@@ -111,6 +113,8 @@ RenderPlan take_plan(ByteReader& reader, const RenderRequest& request) {
   reader.take(plan.repeats);
   reader.take(plan.has_bound);
   reader.take(plan.builder);
+  // The frame has memory for waiting rays of as many threads as rank 0 has.
+  if (plan.shading == Shading::kScene) plan.threads = std::min(plan.threads, threads_of_first);
   // Lanes change no picture; those of rank 0's host may not be here.
   if (plan.mode == sim::Mode::kPlain && !request.lanes) plan.lanes = std::min(plan.lanes, host.lanes);
   return plan;
