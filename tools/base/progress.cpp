@@ -13,6 +13,7 @@
 #include <mutex>
 #include <system_error>
 
+#include "ranks.h"
 #include "words.h"
 
 namespace gridiron::tool {
@@ -70,7 +71,10 @@ std::string words_of_seconds(double seconds) {
   return std::to_string(whole / 3600) + " h " + std::to_string(whole % 3600 / 60) + " min";
 }
 
-Progress::Progress(bool wanted, const char* noun) : drawing_(wanted && ::isatty(STDERR_FILENO) == 1), noun_(noun) {}
+Progress::Progress(bool wanted, const char* noun)
+    : drawing_(wanted && ::isatty(STDERR_FILENO) == 1),
+      lines_(wanted && !drawing_ && ranks().count() > 1),
+      noun_(noun) {}
 
 Progress::~Progress() {
   wipe();
@@ -82,11 +86,20 @@ void Progress::wipe() {
 }
 
 void Progress::update(std::uint64_t done, std::uint64_t total, double part) {
-  if (!drawing_ || total == 0) return;
+  if ((!drawing_ && !lines_) || total == 0) return;
   const double share = (static_cast<double>(done) + part) / static_cast<double>(total);
   const double seconds = stopwatch_.seconds();
   left_.update(seconds, share);
   const auto percent = static_cast<std::uint64_t>(100 * share);
+  const std::string left = left_.seconds() ? ", " + words_of_seconds(*left_.seconds()) + " left" : "";
+  if (lines_) {
+    constexpr double kSecondsBetweenLines = 10;
+    if (seconds - std::max(drawn_seconds_, 0.0) < kSecondsBetweenLines) return;
+    drawn_seconds_ = seconds;
+    std::fprintf(stderr, "%u %%, %s of %s %s%s\n", static_cast<unsigned>(percent), words_of_count(done).c_str(),
+                 words_of_count(total).c_str(), noun_, left.c_str());
+    return;
+  }
   constexpr double kRedraw = 0.25;  // seconds
   if (percent == drawn_percent_ && seconds - drawn_seconds_ < kRedraw) return;
   drawn_percent_ = percent;
@@ -94,7 +107,6 @@ void Progress::update(std::uint64_t done, std::uint64_t total, double part) {
   constexpr std::uint64_t kBarWidth = 30;
   const std::uint64_t filled = std::min(percent, std::uint64_t{100}) * kBarWidth / 100;
   const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-  const std::string left = left_.seconds() ? ", " + words_of_seconds(*left_.seconds()) + " left" : "";
   std::fprintf(stderr, "\r[%s] %3u %%  %s of %s %s%s\033[K", bar.c_str(), static_cast<unsigned>(percent),
                words_of_count(done).c_str(), words_of_count(total).c_str(), noun_, left.c_str());
   std::fflush(stderr);

@@ -1,4 +1,5 @@
-// Progress: a bar on a terminal with the time that is left; draws nothing elsewhere.
+// Progress: a bar on a terminal with the time that is left. Elsewhere nothing, but of many processes, whose launcher
+// keeps the terminal to itself, a line now and then.
 // Memory: small. Threads: update() is called by one at a time. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -34,7 +35,7 @@ class TimeLeft {
 /// Draws on standard error, and wipes the line at its end.
 class Progress {
  public:
-  /// @param wanted  false, or standard error is no terminal: nothing is drawn.
+  /// @param wanted  false: nothing is drawn. Where standard error is no terminal, ranks print a line every 10 seconds.
   /// @param noun    the items that are counted, in the plural.
   explicit Progress(bool wanted, const char* noun = "tiles");
   ~Progress();
@@ -49,6 +50,7 @@ class Progress {
 
  private:
   bool drawing_;
+  bool lines_;  ///< instead
   const char* noun_;
   Stopwatch stopwatch_;
   TimeLeft left_;

@@ -23,7 +23,7 @@ macro(gridiron_with name purpose package)
   if((GRIDIRON_WITH_${name} STREQUAL "AUTO" OR GRIDIRON_WITH_${name}) AND ${package}_FOUND)
     set(GRIDIRON_HAS_${name} ON)
     list(APPEND gridiron_packages
-      "${package} ${${package}_VERSION}${${package}_VERSION_STRING}, since GRIDIRON_WITH_${name}=${GRIDIRON_WITH_${name}}")
+      "${package} ${${package}_VERSION}${${package}_VERSION_STRING}${${package}_CXX_VERSION}, since GRIDIRON_WITH_${name}=${GRIDIRON_WITH_${name}}")
   else()
     list(APPEND gridiron_packages "no ${package}, since GRIDIRON_WITH_${name}=${GRIDIRON_WITH_${name}}")
   endif()

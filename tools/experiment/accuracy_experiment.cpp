@@ -1,6 +1,7 @@
 // The accuracy experiment. SPDX-License-Identifier: Apache-2.0
 #include <utility>
 
+#include "base/ranks.h"
 #include "base/words.h"
 #include "experiment/experiments.h"
 #include "experiment/price_book.h"
@@ -101,6 +102,7 @@ ExperimentResult run_accuracy_experiment(const ExperimentSettings& settings, con
   const auto step_done = [&] { progress(++done, total); };
   list.collect(settings.threads, step_done);
   secondary.collect(settings.threads, step_done);
+  if (!tool::ranks().is_first()) return {};
 
   const std::string size = std::to_string(settings.width) + "x" + std::to_string(settings.height);
   Book book(

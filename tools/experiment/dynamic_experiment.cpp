@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "base/ranks.h"
 #include "base/words.h"
 #include "experiment/bvh_system.h"
 #include "experiment/experiments.h"
@@ -437,6 +438,7 @@ ExperimentResult run_dynamic_experiment(const ExperimentSettings& settings, cons
     }
   }
   plan.execute(settings.threads, progress);
+  if (!tool::ranks().is_first()) return {};
   Book book("Scenes that move",
             "Every figure below comes from one run of `gridiron experiment dynamic`: meshes of " +
                 tool::words_of_count(subjects.front().triangles()) + " to " +

@@ -11,6 +11,7 @@
 #include "experiment/effect_scenes.h"
 #include "experiment/effect_sizes.h"
 #include "experiment/experiments.h"
+#include "experiment/result_bytes.h"
 #include "experiment/table.h"
 #include "experiment/workers.h"
 #include "files/image_files.h"
@@ -356,13 +357,21 @@ ExperimentResult run_effects_experiment(const ExperimentSettings& settings, cons
   std::vector<EffectStep> steps = list_steps(scenes, settings);
   std::mutex mutex;
   std::uint32_t done = 0;
-  share_work(settings.threads, steps.size(), [&](std::size_t i) {
+  const auto step_done = [&] { progress(++done, static_cast<std::uint32_t>(steps.size())); };
+  const auto render = [&](std::size_t i) {
     const EffectStep& step = steps[i];
     *step.frame = render_effect_frame(*step.scene, step.request);
     check_absent_costs(*step.frame, step.expected, step.name);
     const std::lock_guard lock(mutex);
-    progress(++done, static_cast<std::uint32_t>(steps.size()));
-  });
+    step_done();
+  };
+  const auto pack = [&](std::size_t i) { return bytes_of_frame(*steps[i].frame); };
+  const auto unpack = [&](std::size_t i, const tool::Bytes& bytes) {
+    take_frame(bytes, *steps[i].frame);
+    step_done();
+  };
+  share_work(settings.threads, steps.size(), render, {pack, unpack});
+  if (!tool::ranks().is_first()) return {};
   for (const SceneFrames& scene : scenes) {
     check_hiding(scene.whole().single, scene.whole().twofold, scene.key());
   }

@@ -8,6 +8,7 @@
 
 #include "base/failure.h"
 #include "base/progress.h"
+#include "base/ranks.h"
 #include "base/stopwatch.h"
 #include "base/words.h"
 #include "experiment/experiments.h"
@@ -73,6 +74,10 @@ void run_command(const ExperimentRequest& request) {
                                           .width = width,
                                           .height = height};
   settings.largest_knot = request.largest_knot.value_or(settings.largest_knot);
+  if (!tool::ranks().is_first()) {
+    (void)chosen.run(settings, [](std::uint32_t, std::uint32_t) {});
+    return;
+  }
   const std::vector<std::string> names = chosen.file_names();
   OutputFolder folder(request.output, names);
   const Stopwatch stopwatch;

@@ -32,8 +32,8 @@ struct ExperimentResult {
 /// Called serialised with the steps done and all steps.
 using ProgressCall = std::function<void(std::uint32_t, std::uint32_t)>;
 
-// Each runs an experiment, or returns the names of all files that it may write; which ones depends on the scenes.
-// Errors: Failure.
+// Each runs an experiment, divided among the ranks, of which rank 0 alone returns a result; or returns the names of all
+// files that it may write; which ones depends on the scenes. Errors: Failure.
 
 /// The evaluation of Cho, Kim, Han 2012 run again on the simulated chip, with additional sweeps.
 [[nodiscard]] ExperimentResult run_paper_experiment(const ExperimentSettings& settings, const ProgressCall& progress);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/ranks.h"
 #include "experiment/experiments.h"
 #include "experiment/plan.h"
 #include "experiment/sections.h"
@@ -123,6 +124,7 @@ ExperimentResult run_paper_experiment(const ExperimentSettings& settings, const 
 
   // 2. Render and replay.
   plan.execute(settings.threads, progress);
+  if (!tool::ranks().is_first()) return {};
 
   // 3. Write the tables, plots and sentences.
   const std::string size = std::to_string(settings.width) + "x" + std::to_string(settings.height);

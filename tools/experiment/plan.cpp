@@ -1,11 +1,13 @@
 // Plan. SPDX-License-Identifier: Apache-2.0
 #include "experiment/plan.h"
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <utility>
 
 #include "base/failure.h"
+#include "experiment/result_bytes.h"
 #include "experiment/workers.h"
 #include "files/interrupt.h"
 
@@ -103,13 +105,29 @@ std::size_t Plan::rendered_count() const {
 
 void Plan::execute(std::uint32_t threads, const std::function<void(std::uint32_t, std::uint32_t)>& progress) {
   std::mutex mutex;
-  std::uint32_t done = 0;
+  std::uint32_t done = 0, own = 0;
   const auto total = static_cast<std::uint32_t>(results_.size());
+  const auto show = [&] { progress(std::min(total, std::max(done, own * tool::ranks().count())), total); };
   const auto run_done = [&] {
     const std::lock_guard lock(mutex);
-    progress(++done, total);
+    ++done;
+    ++own;  // other ranks have done about as many
+    show();
   };
-  share_work(threads, frames_.size(), [&](std::size_t i) { run_frame(frames_[i], run_done); });
+  const auto pack = [this](std::size_t i) {
+    tool::ByteWriter writer;
+    for (const Run& run : frames_[i].runs) add_run(writer, results_[run.id]);
+    return writer.take();
+  };
+  const auto unpack = [&](std::size_t i, const tool::Bytes& bytes) {
+    tool::ByteReader reader(bytes);
+    for (const Run& run : frames_[i].runs) {
+      take_run(reader, results_[run.id]);
+      ++done;
+      show();
+    }
+  };
+  share_work(threads, frames_.size(), [&](std::size_t i) { run_frame(frames_[i], run_done); }, {pack, unpack});
 }
 
 }  // namespace gridiron::experiment

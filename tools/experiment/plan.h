@@ -66,7 +66,8 @@ class Plan {
   [[nodiscard]] RunId add(const View& view, const std::shared_ptr<const System>& system, Shading shading,
                           const Machine& machine, std::uint32_t core_count);
 
-  /// Runs everything. Results do not depend on `threads`.
+  /// Runs everything, divided among the ranks by frames; each then has all results. They do not depend on `threads` or
+  /// ranks.
   ///
   /// @param progress  called serialised with the runs done and all runs.
   /// A Failure kBadInput of a frame becomes the failure of its runs. Any other Failure is thrown, that of the first

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/failure.h"
+#include "base/value_bytes.h"
 #include "experiment/edge_points.h"
 #include "experiment/sections.h"
 #include "experiment/workers.h"
@@ -124,12 +125,33 @@ void PriceList::compare_view(std::size_t view, const std::function<void()>& step
 void PriceList::collect(std::uint32_t threads, const std::function<void()>& step_done) {
   plan_.execute(threads, [&](std::uint32_t, std::uint32_t) { step_done(); });
   std::mutex mutex;
-  share_work(threads, views_.size(), [&](std::size_t view) {
+  const auto compare = [&](std::size_t view) {
     compare_view(view, [&] {
       const std::lock_guard lock(mutex);
       step_done();
     });
-  });
+  };
+  const auto pack = [this](std::size_t view) {
+    tool::ByteWriter writer;
+    for (const Price& price : prices_) {
+      if (price.view != view) continue;
+      writer.add(price.errors);
+      writer.add(price.at_edges);
+      writer.add(price.same_picture);
+    }
+    return writer.take();
+  };
+  const auto unpack = [&](std::size_t view, const tool::Bytes& bytes) {
+    tool::ByteReader reader(bytes);
+    for (Price& price : prices_) {
+      if (price.view != view) continue;
+      reader.take(price.errors);
+      reader.take(price.at_edges);
+      reader.take(price.same_picture);
+      step_done();
+    }
+  };
+  share_work(threads, views_.size(), compare, {pack, unpack});
 }
 
 }  // namespace gridiron::experiment

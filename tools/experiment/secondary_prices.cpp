@@ -9,6 +9,8 @@
 #include <mutex>
 #include <utility>
 
+#include "base/value_bytes.h"
+#include "experiment/result_bytes.h"
 #include "experiment/workers.h"
 #include "gridiron/device/configurations.h"
 
@@ -176,23 +178,47 @@ void SecondaryPrices::compare(SecondaryPrice& price) const {
 
 void SecondaryPrices::collect(std::uint32_t threads, const std::function<void()>& step_done) {
   std::mutex mutex;
-  const auto share = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
-    share_work(threads, count, [&](std::size_t i) {
+  const auto share = [&](std::size_t count, const std::function<void(std::size_t)>& work, ResultBytes results) {
+    const auto do_step = [&](std::size_t i) {
       work(i);
       const std::lock_guard lock(mutex);
       step_done();
-    });
+    };
+    const auto unpack = [&](std::size_t i, const tool::Bytes& bytes) {
+      results.unpack(i, bytes);
+      step_done();
+    };
+    share_work(threads, count, do_step, {results.pack, unpack});
   };
-  share(plain_.size(), [&](std::size_t i) {
+  const auto frame_bytes = [](auto frame_of) {
+    return ResultBytes{[frame_of](std::size_t i) { return bytes_of_frame(frame_of(i)); },
+                       [frame_of](std::size_t i, const tool::Bytes& bytes) { take_frame(bytes, frame_of(i)); }};
+  };
+  const auto render_plain = [&](std::size_t i) {
     plain_[i] =
         render_effect_frame(with_rays_of(scenes_[i / profiles_.size()], std::nullopt), request(i % profiles_.size()));
-  });
-  share(prices_.size(), [&](std::size_t i) {
+  };
+  share(plain_.size(), render_plain, frame_bytes([this](std::size_t i) -> EffectFrame& { return plain_[i]; }));
+  const auto render_price = [&](std::size_t i) {
     SecondaryPrice& price = prices_[i];
     price.frame = render_effect_frame(with_rays_of(scenes_[price.scene], price.kind), request(price.profile));
-  });
-  share(prices_.size(), [&](std::size_t i) { compare(prices_[i]); });
-  share(solids_.size(), [&](std::size_t i) {
+  };
+  share(prices_.size(), render_price, frame_bytes([this](std::size_t i) -> EffectFrame& { return prices_[i].frame; }));
+  const auto pack_errors = [this](std::size_t i) {
+    tool::ByteWriter writer;
+    writer.add(prices_[i].picture);
+    writer.add(prices_[i].errors);
+    writer.add(prices_[i].at_edges);
+    return writer.take();
+  };
+  const auto unpack_errors = [this](std::size_t i, const tool::Bytes& bytes) {
+    tool::ByteReader reader(bytes);
+    reader.take(prices_[i].picture);
+    reader.take(prices_[i].errors);
+    reader.take(prices_[i].at_edges);
+  };
+  share(prices_.size(), [&](std::size_t i) { compare(prices_[i]); }, {pack_errors, unpack_errors});
+  const auto ask_solids = [&](std::size_t i) {
     SolidPrice& price = solids_[i];
     EffectFrameRequest large = request(price.profile);  // nothing is timed, so there is time for more rays
     large.width *= 2;
@@ -204,7 +230,16 @@ void SecondaryPrices::collect(std::uint32_t threads, const std::function<void()>
       price.edge_integers += one.edge_integers;
       price.open += one.open;
     }
-  });
+  };
+  const auto pack_solid = [this](std::size_t i) {
+    tool::ByteWriter writer;
+    writer.add(solids_[i]);
+    return writer.take();
+  };
+  const auto unpack_solid = [this](std::size_t i, const tool::Bytes& bytes) {
+    tool::ByteReader(bytes).take(solids_[i]);
+  };
+  share(solids_.size(), ask_solids, {pack_solid, unpack_solid});
 }
 
 }  // namespace gridiron::experiment

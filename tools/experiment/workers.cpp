@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <mutex>
 #include <vector>
 
 namespace gridiron::experiment {
@@ -32,6 +33,19 @@ void share_work(std::uint32_t threads, std::size_t count, const std::function<vo
   for (const std::exception_ptr& error : errors) {
     if (error != nullptr) std::rethrow_exception(error);
   }
+}
+
+void share_work(std::uint32_t threads, std::size_t count, const std::function<void(std::size_t)>& work,
+                const ResultBytes& results) {
+  tool::Ranks& ranks = tool::ranks();
+  if (ranks.count() == 1) return share_work(threads, count, work);
+  std::mutex mutex;
+  share_work(threads, static_cast<std::size_t>(ranks.share_of(count)), [&](std::size_t k) {
+    work(k * ranks.count() + ranks.rank());
+    const std::lock_guard lock(mutex);
+    ranks.attend();
+  });
+  tool::exchange_results(count, results.pack, results.unpack);
 }
 
 }  // namespace gridiron::experiment

@@ -6,11 +6,23 @@
 #include <cstdint>
 #include <functional>
 
+#include "base/ranks.h"
+
 namespace gridiron::experiment {
 
 /// Calls work(0) to work(count - 1), each once, the lowest first, on `threads` threads including the caller's, or on as
 /// many as the host can start. After an exception no further piece begins; that of the lowest piece is thrown once all
 /// threads have ended.
 void share_work(std::uint32_t threads, std::size_t count, const std::function<void(std::size_t)>& work);
+
+/// Results of pieces of work as bytes, for other ranks.
+struct ResultBytes {
+  std::function<tool::Bytes(std::size_t)> pack;                 ///< @returns the result of a piece
+  std::function<void(std::size_t, const tool::Bytes&)> unpack;  ///< takes the result of a piece of another rank
+};
+
+/// The same with the pieces divided among tool::ranks(). On return every rank has the results of all.
+void share_work(std::uint32_t threads, std::size_t count, const std::function<void(std::size_t)>& work,
+                const ResultBytes& results);
 
 }  // namespace gridiron::experiment

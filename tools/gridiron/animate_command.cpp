@@ -12,10 +12,12 @@
 #include "animate/frame_figures.h"
 #include "animate/frame_log.h"
 #include "animate/frame_maker.h"
+#include "animate/frame_sharing.h"
 #include "base/content_hash.h"
 #include "base/failure.h"
 #include "base/numbers.h"
 #include "base/progress.h"
+#include "base/ranks.h"
 #include "base/words.h"
 #include "commands.h"
 #include "files/atomic_file.h"
@@ -111,19 +113,33 @@ void Animation::resume() {
 
 void Animation::render() {
   Progress progress(!request_.render.scene.quiet, "frames");
-  std::size_t done = 0;
-  const auto missing = static_cast<std::size_t>(
-      std::ranges::count_if(figures_, [](const auto& figures) { return !figures.has_value(); }));
+  std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < figures_.size(); ++i) {
-    if (figures_[i]) continue;
-    progress.wipe();  // notes may come
-    const MadeFrame made =
-        maker_->make(i, request_.timeline && i == 0, [&](double share) { progress.update(done, missing, share); });
+    if (!figures_[i]) missing.push_back(i);
+  }
+  missing = share_frame_numbers(std::move(missing));
+  std::size_t done = 0;
+  const auto take = [&](std::size_t i, const MadeFrame& made) {
     progress.wipe();
     write_frame(i, made);
     tell_note(maker_->input_of(i), made.note);
     ++done;
+  };
+  FrameArrivals arrivals(take);
+  if (!missing.empty()) maker_->begin();
+  for (std::size_t k = 0; k < missing.size(); k += ranks().count()) {
+    const std::size_t i = missing[k];
+    progress.wipe();  // notes may come
+    take(i, maker_->make(i, request_.timeline && i == 0, [&](double share) {
+      arrivals.take_arrived();
+      progress.update(done, missing.size(), share + arrivals.parts());
+    }));
   }
+  while (done < missing.size()) {
+    arrivals.take_next();
+    progress.update(done, missing.size(), arrivals.parts());
+  }
+  log_.put_in_order();
 }
 
 // At any moment the log names no picture that is not complete: a picture has its line last, and its hash is there.
@@ -183,6 +199,8 @@ void Animation::print() const {
 }  // namespace
 
 void run_command(const AnimateRequest& request) {
+  require_shared_inputs(request);
+  if (!ranks().is_first()) return render_frames_for_first(request);
   if (request.film) require_ffmpeg(*request.film);
   Animation animation(request);
   OutputFolder folder(request.output, names_of(animation.maker()));

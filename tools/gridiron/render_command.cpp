@@ -12,6 +12,8 @@
 #include <utility>
 
 #include "base/progress.h"
+#include "base/ranks.h"
+#include "base/value_bytes.h"
 #include "base/words.h"
 #include "commands.h"
 #include "files/atomic_file.h"
@@ -19,10 +21,11 @@
 #include "files/image_files.h"
 #include "files/input_file.h"
 #include "gridiron/device/store_facts.h"
-#include "gridiron/frame/chip_frame.h"
+#include "gridiron/frame/divided_frame.h"
 #include "gridiron/frame/frame_memory.h"
 #include "gridiron/frame/frame_pictures.h"
 #include "gridiron/frame/requested_frame.h"
+#include "gridiron/frame/shared_frame.h"
 #include "gridiron/frame/unseen_scene.h"
 #include "gridiron/info/worst_of_view.h"
 #include "gridiron/scene/effect_names.h"
@@ -198,13 +201,14 @@ Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& re
       } else {
         prepare_frame(*frame, requested.input, plan, requested.view);
       }
+      share_frame(frame);
     }
     if (!progress) progress.emplace(!plan.scene.quiet, "tiles");
     const Stopwatch stopwatch;
     const auto report = [&](std::uint32_t done, std::uint32_t total) {
       progress->update(std::uint64_t{repeat} * total + done, std::uint64_t{plan.repeats} * total);
     };
-    repeated.result = render_on_chip(*frame, plan, report);
+    repeated.result = render_divided(*frame, plan, report);
     const HostSeconds render = stopwatch.both();
     const PlaneHashes hashes = hashes_of(*frame, plan);
     repeated.build = repeat == 0 ? frame->build_seconds : repeated.build.least(frame->build_seconds);
@@ -215,14 +219,39 @@ Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& re
   return repeated;
 }
 
+void give_plan(const RequestedFrame& requested) {
+  if (ranks().count() == 1) return;
+  ByteWriter writer;
+  add_plan(writer, requested.plan);
+  writer.add(std::holds_alternative<PackedScene>(requested.input.content));
+  Bytes bytes = writer.take();
+  ranks().broadcast(bytes);
+}
+
+// The part of another rank than 0, step by step as render_repeatedly().
+void render_for_first(const RenderRequest& request) {
+  Bytes bytes;
+  ranks().broadcast(bytes);
+  ByteReader reader(bytes);
+  const RenderPlan plan = take_plan(reader, request);
+  const bool is_packed = reader.take<bool>();
+  std::optional<FrameMemory> frame;
+  for (std::uint32_t repeat = 0; repeat < plan.repeats; ++repeat) {
+    if (repeat == 0 || !is_packed) share_frame(frame);
+    (void)render_divided(*frame, plan, [](std::uint32_t, std::uint32_t) {});
+  }
+}
+
 }  // namespace
 
 void run_command(const RenderRequest& request) {
+  if (!ranks().is_first()) return render_for_first(request);
   const StageLines stages(!request.scene.quiet);
   RequestedFrame requested = read_requested_frame(request, request.named_outputs().declared());
   const SceneInput& input = requested.input;
   const RenderPlan& plan = requested.plan;
   const FrameOutputs& outputs = plan.outputs;
+  give_plan(requested);
   std::optional<FrameMemory> memory;
   const Repeated repeated = render_repeatedly(memory, requested);
   const FrameMemory& frame = *memory;

@@ -4,9 +4,12 @@
 #include <utility>
 
 #include "base/failure.h"
+#include "base/ranks.h"
+#include "base/value_bytes.h"
 #include "files/input_file.h"
 #include "frame_maker.h"
 #include "gridiron/frame/requested_frame.h"
+#include "gridiron/frame/shared_frame.h"
 #include "gridiron/frame/view_bounds.h"
 #include "gridiron/scene/camera_path.h"
 #include "gridiron/scene/scene_points.h"
@@ -29,7 +32,7 @@ class CameraMove final : public FrameMaker {
   CameraMove(const AnimateRequest& request, const std::filesystem::path& input) : animate_(request) {
     request_ = request.render;
     request_.scene.input = input;
-    check_foreseen(request, input);
+    if (ranks().is_first()) check_foreseen(request, input);
     if (request.path) path_ = read_camera_path(*request.path);
   }
 
@@ -38,6 +41,7 @@ class CameraMove final : public FrameMaker {
   [[nodiscard]] std::string picture_of(std::size_t i) const override { return numbered_picture(i, count()); }
 
   void prepare() override;
+  void begin() override;
   [[nodiscard]] FrameSource source_of(std::size_t i) override {
     return {content_, hash_of_view(camera(i), frame_.plan.width, frame_.plan.height)};
   }
@@ -48,6 +52,7 @@ class CameraMove final : public FrameMaker {
   [[nodiscard]] Camera camera(std::size_t i) const {
     return camera_of(views_[i], frame_.plan.width, frame_.plan.height);
   }
+  void read();
   void build();
 
   const AnimateRequest& animate_;
@@ -57,10 +62,34 @@ class CameraMove final : public FrameMaker {
   std::uint64_t content_ = 0;
   RequestedFrame frame_;
   SingleBuild build_;
-  std::optional<FrameMemory> memory_;  // once a frame is rendered
+  std::optional<FrameMemory> memory_;  // once frames are rendered
 };
 
+// Rank 0 alone reads the scene; the others take what it found, and its memory in begin().
 void CameraMove::prepare() {
+  Bytes bytes;
+  if (ranks().is_first()) {
+    read();
+    ByteWriter writer;
+    add_plan(writer, frame_.plan);
+    writer.add(content_);
+    writer.add(views_);
+    bytes = writer.take();
+  }
+  ranks().broadcast(bytes);
+  if (ranks().is_first()) return;
+  ByteReader reader(bytes);
+  frame_.plan = take_plan(reader, request_);
+  reader.take(content_);
+  reader.take(views_);
+}
+
+void CameraMove::begin() {
+  if (ranks().is_first()) build();
+  share_frame(memory_);
+}
+
+void CameraMove::read() {
   PictureRequest picture{request_.view, std::nullopt, request_.size};
   if (request_.camera) picture.camera = read_camera_file(*request_.camera);
   const InputHash hash;
@@ -102,7 +131,6 @@ void CameraMove::build() {
 }
 
 MadeFrame CameraMove::make(std::size_t i, bool has_timeline, const FrameProgress& progress) {
-  if (!memory_) build();
   aim_camera(*memory_, camera(i), request_.scene.input);
   MadeFrame made = render_frame(*memory_, frame_.plan, content_, BuildCost{}, has_timeline, progress);
   if (made.note) made.note = "frame " + std::to_string(i) + ": " + *made.note;

@@ -214,10 +214,19 @@ void FrameLog::begin() {
 
 void FrameLog::add(std::size_t i, const LoggedFrame& frame) {
   const std::string line = line_of(i, frame);
+  if (!frames_.empty() && frames_.rbegin()->first > i) is_in_order_ = false;
+  frames_[i] = frame;
   errno = 0;
   const ssize_t written = ::write(descriptor_, line.data(), line.size());  // a file takes a short line at once
   if (written == static_cast<ssize_t>(line.size())) return;
   input_error(path_, std::string("cannot write: ") + (errno != 0 ? std::strerror(errno) : "the disk is full"));
+}
+
+void FrameLog::put_in_order() {
+  if (is_in_order_) return;
+  ::close(std::exchange(descriptor_, -1));
+  begin();
+  is_in_order_ = true;
 }
 
 }  // namespace gridiron::tool

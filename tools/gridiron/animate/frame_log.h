@@ -53,6 +53,9 @@ class FrameLog {
   /// Appends a line. Precondition: begin(). Errors: Failure (kBadInput).
   void add(std::size_t i, const LoggedFrame& frame);
 
+  /// Writes the log anew if its lines do not have the order of the frames. Errors: Failure (kBadInput).
+  void put_in_order();
+
   /// Throws Failure (kBadInput): `file:line: cannot be resumed: reason`.
   [[noreturn]] void refuse(std::uint64_t line, const std::string& reason) const;
 
@@ -61,6 +64,7 @@ class FrameLog {
   std::map<std::string, std::string> options_;
   std::map<std::size_t, LoggedFrame> frames_;
   int descriptor_ = -1;
+  bool is_in_order_ = true;
 };
 
 }  // namespace gridiron::tool

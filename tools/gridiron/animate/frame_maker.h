@@ -38,11 +38,14 @@ class FrameMaker {
   [[nodiscard]] virtual std::filesystem::path input_of(std::size_t i) const = 0;
   [[nodiscard]] virtual std::string picture_of(std::size_t i) const = 0;  ///< file name
 
-  /// Reads what the views of all frames depend on. Called once, after the outputs were declared.
+  /// Reads what the views of all frames depend on. Called once, after the outputs were declared. All ranks call it.
   virtual void prepare() = 0;
 
   /// @returns what a frame is made of, without rendering it.
   [[nodiscard]] virtual FrameSource source_of(std::size_t i) = 0;
+
+  /// Called once before frames are made, if there are any to make. All ranks call it.
+  virtual void begin() {}
 
   /// @param has_timeline  whether to make that too.
   [[nodiscard]] virtual MadeFrame make(std::size_t i, bool has_timeline, const FrameProgress& progress) = 0;

@@ -21,10 +21,7 @@ std::optional<std::uint32_t> chosen_tile(const RenderPlan& plan, const FrameReco
   return plan.tile->y * record.tiles_x + plan.tile->x;
 }
 
-}  // namespace
-
-sim::ChipResult render_on_chip(FrameMemory& frame, const RenderPlan& plan,
-                               std::function<void(std::uint32_t done, std::uint32_t total)> progress) {
+sim::ChipOptions options_of(const FrameMemory& frame, const RenderPlan& plan) {
   sim::ChipOptions options;
   options.mode = plan.mode;
   options.threads = plan.threads;
@@ -35,8 +32,23 @@ sim::ChipResult render_on_chip(FrameMemory& frame, const RenderPlan& plan,
   options.seed = plan.seed;
   options.limits.queue_depth = plan.scene.machine->queue_depth;
   options.spill = {.address = frame.spill.address, .bytes_per_core = frame.spill_bytes_per_core};
+  return options;
+}
+
+}  // namespace
+
+sim::ChipResult render_on_chip(FrameMemory& frame, const RenderPlan& plan,
+                               std::function<void(std::uint32_t done, std::uint32_t total)> progress) {
+  sim::ChipOptions options = options_of(frame, plan);
   options.only_tile = chosen_tile(plan, frame.record);
   options.progress = std::move(progress);
+  return run_on_chip(frame.memory, frame.record_address, std::move(options), plan.scene.input);
+}
+
+sim::ChipResult render_tile(FrameMemory& frame, const RenderPlan& plan, std::uint32_t tile) {
+  sim::ChipOptions options = options_of(frame, plan);
+  options.threads = 1;
+  options.only_tile = tile;
   return run_on_chip(frame.memory, frame.record_address, std::move(options), plan.scene.input);
 }
 

@@ -17,6 +17,10 @@ namespace gridiron::tool {
 [[nodiscard]] sim::ChipResult render_on_chip(FrameMemory& frame, const RenderPlan& plan,
                                              std::function<void(std::uint32_t done, std::uint32_t total)> progress);
 
+/// The same of one tile, on the calling thread; any number of threads at once, but where the frame has memory for
+/// waiting rays, of which all would take the first core's.
+[[nodiscard]] sim::ChipResult render_tile(FrameMemory& frame, const RenderPlan& plan, std::uint32_t tile);
+
 /// Renders the frame whose FrameRecord lies at `frame`; signals end it between two tiles.
 /// @param input  source of the frame, for messages.
 /// Errors: Failure if the frame failed, of stop_if_interrupted().

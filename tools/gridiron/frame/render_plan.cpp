@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/failure.h"
+#include "base/ranks.h"
 #include "files/input_file.h"
 #include "gridiron/device/store_facts.h"
 
@@ -160,7 +161,8 @@ FrameOutputs RenderRequest::named_outputs() const {
 }
 
 Host this_host() {
-  return {std::max(1u, std::thread::hardware_concurrency()), sim::widest_lanes(), sim::has_instrumented_mode()};
+  const std::uint32_t threads = ranks().usual_threads(std::max(1u, std::thread::hardware_concurrency()));
+  return {threads, sim::widest_lanes(), sim::has_instrumented_mode()};
 }
 
 void check_request(const RenderRequest& request, const Host& host) {

@@ -1,0 +1,83 @@
+// Three ranks write the files of one process, byte for byte. SPDX-License-Identifier: Apache-2.0
+#include "mpi_run.h"
+
+namespace gridiron::test {
+namespace {
+
+const std::string kScenes = GRIDIRON_SCENE_FILES;
+
+class MpiFiles : public Mpi {
+ protected:
+  const TemporaryFolder folder_{"a.ply", make_torus(24, 16, 1.0f, 0.4f)};
+};
+
+// A picture with all its planes, the report with all its cycles, and the timeline: 12 tiles, the last row cut.
+TEST_F(MpiFiles, OfAPicture) {
+  const Words files = {"-o", "OUT/a.png", "--depth", "OUT/d.pfm", "--ids", "OUT/i.pfm", "--report", "OUT/r.json"};
+  const Words common = Words{"render", "a.ply", "--size", "200x170", "--threads", "2"} + files;
+  expect_same_files(folder_, common + Words{"--timeline", "OUT/t.json.txt"});
+  expect_same_files(folder_, common + Words{"--configuration", "reference", "--repeat", "2"});
+  expect_same_files(folder_, common + Words{"--mode", "plain"});
+}
+
+// Rays that wait lie in main memory too.
+TEST_F(MpiFiles, OfAPictureWithEffects) {
+  expect_same_files(folder_, {"render", kScenes + "/everything.nff", "--size", "70x40", "-o", "OUT/a.png", "--report",
+                              "OUT/r.json"});
+}
+
+// Fewer tiles than ranks, a single tile of many, and a packed scene, which is not built.
+TEST_F(MpiFiles, OfFewTiles) {
+  expect_same_files(folder_, {"render", "a.ply", "--size", "16x16", "-o", "OUT/a.png", "--report", "OUT/r.json"});
+  expect_same_files(folder_, {"render", "a.ply", "--size", "96x96", "--tile", "1,0", "-o", "OUT/a.png"});
+  (void)run(folder_, {"pack", "a.ply", "-o", "a.scene"});
+  expect_same_files(folder_, {"render", "a.scene", "--size", "96x96", "--repeat", "2", "-o", "OUT/a.png", "--report",
+                              "OUT/r.json"});
+}
+
+TEST_F(MpiFiles, OfACameraThatMoves) {
+  expect_same_files(folder_, {"animate", "a.ply", "-o", "OUT", "--turntable", "5", "--size", "40x40", "--timeline",
+                              "OUT/t.txt"});
+  expect_same_files(folder_, {"animate", kScenes + "/glass.nff", "-o", "OUT", "--turntable", "4", "--size", "24x24"});
+}
+
+TEST_F(MpiFiles, OfASeriesOfMeshes) {
+  std::filesystem::create_directory(folder_.path("in"));
+  for (int i = 0; i < 4; ++i) {
+    folder_.write_ply("in/m" + std::to_string(i) + ".ply", moved(make_sphere(8, 10, 1.0f), 1.0f, Vec3(float(i), 0, 0)));
+  }
+  expect_same_files(folder_, {"animate", "in", "-o", "OUT", "--size", "40x40"});
+}
+
+// What is complete stays, whichever frames those are.
+TEST_F(MpiFiles, OfAnAnimationThatGoesOn) {
+  const Words turn = {"animate", "a.ply", "-o", "out", "--turntable", "7", "--size", "40x40"};
+  (void)run(folder_, turn);
+  const std::map<std::string, std::string> whole = files_of(folder_.path("out"));
+  for (const char* name : {"frame0001.png", "frame0004.png", "frame0005.png", "animation.csv"}) {
+    std::filesystem::remove(folder_.path(std::string("out/") + name));
+  }
+  const ProgramResult result = run_ranks(folder_, 3, turn + Words{"--resume"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "out/animation.log: 4 of 7 pictures complete\n");
+  EXPECT_EQ(files_of(folder_.path("out")), whole);
+  EXPECT_EQ(run_ranks(folder_, 3, turn + Words{"--resume"}).exit_code, 0);
+  EXPECT_EQ(files_of(folder_.path("out")), whole);
+}
+
+TEST_F(MpiFiles, OfAnExperiment) {
+  std::filesystem::create_directory(folder_.path("none"));
+  expect_same_files(folder_, {"experiment", "dynamic", "-o", "OUT", "--scenes", "none", "--size", "16x16", "--largest",
+                              "6000"});
+}
+
+TEST_F(MpiFiles, OtherCommandsAreThoseOfOneProcess) {
+  const ProgramResult alone = run(folder_, {"info", "a.ply"});
+  const ProgramResult ranks = run_ranks(folder_, 3, {"info", "a.ply"});
+  EXPECT_EQ(ranks.exit_code, 0);
+  EXPECT_EQ(ranks.out, alone.out);
+  EXPECT_EQ(run_ranks(folder_, 2, {"--version"}).out, run(folder_, {"--version"}).out);
+}
+
+}  // namespace
+}  // namespace gridiron::test

@@ -1,0 +1,92 @@
+// Runs gridiron_mpi. SPDX-License-Identifier: Apache-2.0
+#include "mpi_run.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#ifndef GRIDIRON_MPIEXEC
+#define GRIDIRON_MPIEXEC ""
+#define GRIDIRON_MPI_PROGRAM ""
+#define GRIDIRON_MPI_OTHER ""
+#endif
+
+namespace gridiron::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Processors are few here, and the test may run as root in a container.
+std::string mpirun_line(int ranks, const char* program) {
+  return std::string("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 '") + GRIDIRON_MPIEXEC +
+         "' --oversubscribe --bind-to none -n " + std::to_string(ranks) + " '" + program + "'";
+}
+
+// Without what names the host, in a report.
+std::string comparable(const std::string& name, const std::string& bytes) {
+  if (!name.ends_with(".json")) return bytes;
+  nlohmann::ordered_json report = nlohmann::ordered_json::parse(bytes);
+  EXPECT_TRUE(report.contains("host")) << name;
+  report.erase("host");
+  return report.dump(1);
+}
+
+std::string joined(const Words& words, const std::string& out) {
+  std::string line;
+  for (std::string word : words) {
+    if (word == "OUT") word = out;
+    if (word.starts_with("OUT/")) word.replace(0, 3, out);
+    line += " '" + word + "'";
+  }
+  return line;
+}
+
+}  // namespace
+
+void Mpi::SetUp() {
+  if (*GRIDIRON_MPIEXEC == '\0') GTEST_SKIP() << "built without MPI (GRIDIRON_WITH_MPI)";
+  if (!fs::exists(GRIDIRON_MPIEXEC)) GTEST_SKIP() << "no " << GRIDIRON_MPIEXEC;
+}
+
+std::string ranks_line(int ranks) {
+  return mpirun_line(ranks, GRIDIRON_MPI_PROGRAM);
+}
+
+std::string other_line(int ranks) {
+  return "-n " + std::to_string(ranks) + " '" + GRIDIRON_MPI_OTHER + "'";
+}
+
+ProgramResult run_ranks(const TemporaryFolder& folder, int ranks, const Words& arguments) {
+  return run_shell(folder.folder(), ranks_line(ranks) + joined(arguments, "OUT"));
+}
+
+std::map<std::string, std::string> files_of(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    files[entry.path().filename().string()] = read_file(entry.path());
+  }
+  return files;
+}
+
+void expect_same_files(const TemporaryFolder& folder, const Words& arguments) {
+  SCOPED_TRACE(testing::PrintToString(arguments));
+  for (const char* out : {"alone", "ranks"}) {
+    fs::remove_all(folder.path(out));
+    fs::create_directory(folder.path(out));
+  }
+  const ProgramResult alone = run_shell(folder.folder(), "\"$GRIDIRON\"" + joined(arguments, "alone"));
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  const ProgramResult ranks = run_shell(folder.folder(), ranks_line(3) + joined(arguments, "ranks"));
+  ASSERT_EQ(ranks.exit_code, 0) << ranks.err;
+  const std::map<std::string, std::string> expected = files_of(folder.path("alone"));
+  const std::map<std::string, std::string> got = files_of(folder.path("ranks"));
+  Words names, got_names;
+  for (const auto& [name, bytes] : expected) names.push_back(name);
+  for (const auto& [name, bytes] : got) got_names.push_back(name);
+  ASSERT_EQ(got_names, names);
+  for (const auto& [name, bytes] : expected) {
+    if (name.starts_with("host_")) continue;
+    EXPECT_TRUE(comparable(name, got.at(name)) == comparable(name, bytes)) << name << " differs";
+  }
+}
+
+}  // namespace gridiron::test

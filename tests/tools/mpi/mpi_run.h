@@ -1,0 +1,32 @@
+// Runs gridiron_mpi under mpirun.
+// Memory: strings. Threads: one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+
+#include "../gridiron/run_program.h"
+
+namespace gridiron::test {
+
+/// Skips a test where there is no MPI, or no mpirun.
+class Mpi : public ::testing::Test {
+ protected:
+  void SetUp() override;
+};
+
+/// @returns the part of a command line before the arguments: mpirun, so many ranks, the program.
+[[nodiscard]] std::string ranks_line(int ranks);
+/// @returns the same with the program of another version.
+[[nodiscard]] std::string other_line(int ranks);
+
+/// Runs so many ranks to the end.
+ProgramResult run_ranks(const TemporaryFolder& folder, int ranks, const Words& arguments);
+
+/// @returns the files of a folder by name, hidden ones too.
+[[nodiscard]] std::map<std::string, std::string> files_of(const std::filesystem::path& folder);
+
+/// Runs a command by one process into folder `alone` and by three into `ranks`, where the word OUT of the arguments
+/// is the folder's name, and compares all files.
+void expect_same_files(const TemporaryFolder& folder, const Words& arguments);
+
+}  // namespace gridiron::test

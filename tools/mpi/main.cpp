@@ -1,0 +1,83 @@
+// The gridiron_mpi program: one of the processes that mpirun starts. Rank 0 prints and writes files; the others print
+// nothing. SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <gridiron/version.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "files/command_files.h"
+#include "files/overdue_exit.h"
+#include "gridiron/program.h"
+#include "import/model_import.h"
+#include "mpi_ranks.h"
+
+// Tests build a program of another version.
+#ifndef GRIDIRON_MPI_VERSION
+#define GRIDIRON_MPI_VERSION gridiron::kVersion
+#endif
+
+namespace {
+
+using namespace gridiron::tool;
+
+// Notes, progress and results of other ranks than 0 go nowhere. @returns standard error, for last words.
+int silence() {
+  const int error = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  (void)::dup2(nowhere, STDOUT_FILENO);
+  (void)::dup2(nowhere, STDERR_FILENO);
+  (void)::close(nowhere);
+  return error;
+}
+
+std::string joined(int count, const char* const* values) {
+  std::string text;
+  for (int i = 1; i < count; ++i) text += std::string(values[i]) + '\n';
+  return text;
+}
+
+// A command that failed anywhere has failed everywhere.
+ProgramEnd run(MpiRanks& ranks, int count, const char* const* values) {
+  try {
+    ranks.require_alike(GRIDIRON_MPI_VERSION, joined(count, values));
+    ProgramEnd end = run_program(count, values);
+    if (end.code == ExitCode::kDone) ranks.finish();
+    return end;
+  } catch (const Failure& failure) {
+    return {failure.code(), failure.what()};
+  }
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  if (const std::optional<int> code = serve_import(count, values)) return *code;
+  std::optional<MpiRanks> ranks;
+  try {
+    ranks.emplace();
+  } catch (const Failure& failure) {
+    std::fprintf(stderr, "gridiron_mpi: %s\n", failure.what());
+    return static_cast<int>(failure.code());
+  }
+  const RanksInUse in_use(*ranks);
+  const int error = ranks->is_first() ? STDERR_FILENO : silence();
+  ProgramEnd end;
+  {
+    const CommandFiles files;
+    end = run(*ranks, count, values);
+    if (end.code == ExitCode::kDone) return 0;
+    end.words += "\n";
+    if (ranks->is_first()) say_last_words(end.words.c_str());
+  }
+  if (!ranks->is_first()) {
+    end.words.pop_back();
+    ranks->report_failure(end.code, end.words);
+    // Rank 0 has not heard: it is in a long call, or has ended.
+    const std::string words = ranks->name() + ": " + end.words + "\n";
+    (void)!::write(error, words.data(), words.size());
+  }
+  MpiRanks::abort(static_cast<int>(end.code));
+}
