@@ -45,6 +45,10 @@ std::string joined(const Words& words, const std::string& out) {
 void Mpi::SetUp() {
   if (*GRIDIRON_MPIEXEC == '\0') GTEST_SKIP() << "built without MPI (GRIDIRON_WITH_MPI)";
   if (!fs::exists(GRIDIRON_MPIEXEC)) GTEST_SKIP() << "no " << GRIDIRON_MPIEXEC;
+  // Where a container forbids what mpirun needs, no program starts.
+  const TemporaryFolder folder;
+  const ProgramResult probe = run_shell(folder.folder(), mpirun_line(1, "true"));
+  if (probe.exit_code != 0) GTEST_SKIP() << "mpirun starts nothing here: " << probe.err;
 }
 
 std::string ranks_line(int ranks) {

@@ -8,7 +8,7 @@
 
 namespace gridiron::test {
 
-/// Skips a test where there is no MPI, or no mpirun.
+/// Skips a test where there is no MPI, or mpirun starts nothing.
 class Mpi : public ::testing::Test {
  protected:
   void SetUp() override;
