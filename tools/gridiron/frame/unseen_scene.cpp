@@ -91,9 +91,11 @@ std::optional<std::string> unseen_note(const FrameRecord& frame, const SeenPlane
   const std::optional<bool> is_missed = is_empty(frame, planes);
   if (is_missed == false) return std::nullopt;
   const char* reason = reason_of(extremes_of(frame, points));
-  const std::string note = "no pixel shows the scene";
-  if (reason != nullptr) return note + ": " + reason;
-  return is_missed ? std::optional(note + ": all rays miss its triangles") : std::nullopt;
+  if (reason == nullptr) {
+    if (!is_missed) return std::nullopt;
+    reason = "all rays miss its triangles";
+  }
+  return std::string("no pixel shows the scene: ") + reason;
 }
 
 std::optional<std::string> unseen_note(FrameMemory& frame, const sim::ChipResult& result, sim::Mode mode) {
