@@ -42,6 +42,30 @@ class MpiKill : public Mpi {
     return children;
   }
 
+  // Waits for mpirun, two minutes at most: Open MPI 4.1 sometimes hangs in its own end when a rank dies while it
+  // connects. By then all ranks must have ended. @returns its exit code; 1 if it was killed.
+  [[nodiscard]] static int wait_for(pid_t mpirun, const std::vector<pid_t>& ranks) {
+    int status = 0;
+    for (int wait = 0; wait < 12000; ++wait) {
+      if (::waitpid(mpirun, &status, WNOHANG) == mpirun) return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+      ::usleep(10000);
+    }
+    for (const pid_t rank : ranks) {
+      const std::string state = read_state(rank);
+      EXPECT_TRUE(state.empty() || state == "Z") << "rank " << rank << " runs on: " << state;
+    }
+    ::kill(mpirun, SIGKILL);
+    (void)::waitpid(mpirun, &status, 0);
+    return 1;
+  }
+
+  [[nodiscard]] static std::string read_state(pid_t process) {
+    std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+    std::string id, name, state;
+    file >> id >> name >> state;
+    return state;
+  }
+
   const TemporaryFolder folder_{"a.ply", make_sphere(60, 80, 1.0f)};
 };
 
@@ -59,13 +83,11 @@ TEST_F(MpiKill, AtTenMomentsAndResumed) {
     std::vector<pid_t> ranks;
     for (int wait = 0; wait < 2000 && (ranks = ranks_of(mpirun)).size() < 3; ++wait) ::usleep(5000);
     ASSERT_EQ(ranks.size(), 3u);
-    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 2500));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500 + random() % 2500));
     ::kill(ranks[random() % 3], random() % 2 == 0 ? SIGKILL : SIGTERM);
-    int status = 0;
-    ::waitpid(mpirun, &status, 0);
-    ASSERT_TRUE(WIFEXITED(status));
+    const int code = wait_for(mpirun, ranks);
     const std::string words = read_file(folder_.path("err.txt"));
-    if (WEXITSTATUS(status) != 0) {
+    if (code != 0) {
       ++ended_early;
       EXPECT_NE(words, "");
     }
