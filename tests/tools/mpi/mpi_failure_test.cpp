@@ -4,7 +4,7 @@
 namespace gridiron::test {
 namespace {
 
-class MpiFailure : public Mpi {
+class MpiFailure : public MpiFull {
  protected:
   // mpirun adds words of its own, on standard error too.
   void expect_failure_of(const std::string& line, int exit_code, const std::string& words) {

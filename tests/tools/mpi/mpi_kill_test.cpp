@@ -17,13 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MpiKill : public Mpi {
+class MpiKill : public MpiFull {
  protected:
-  void SetUp() override {
-    if (std::getenv("GRIDIRON_MPI_LONG") == nullptr) GTEST_SKIP() << "a longer test: ctest -L full";
-    Mpi::SetUp();
-  }
-
   // Starts a line of the shell in a process of its own, its words going to `err`.
   [[nodiscard]] pid_t start(const std::string& line) {
     const pid_t process = ::fork();

@@ -2,6 +2,7 @@
 #include "mpi_run.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #ifndef GRIDIRON_MPIEXEC
@@ -14,6 +15,8 @@ namespace gridiron::test {
 namespace {
 
 namespace fs = std::filesystem;
+
+const std::string kAtMost = "timeout -k 5 300 env ";  // an mpirun that hangs is a failure
 
 // Processors are few here, and the test may run as root in a container.
 std::string mpirun_line(int ranks, const char* program) {
@@ -47,8 +50,13 @@ void Mpi::SetUp() {
   if (!fs::exists(GRIDIRON_MPIEXEC)) GTEST_SKIP() << "no " << GRIDIRON_MPIEXEC;
   // Where a container forbids what mpirun needs, no program starts.
   const TemporaryFolder folder;
-  const ProgramResult probe = run_shell(folder.folder(), mpirun_line(1, "true"));
+  const ProgramResult probe = run_shell(folder.folder(), kAtMost + mpirun_line(1, "true"));
   if (probe.exit_code != 0) GTEST_SKIP() << "mpirun starts nothing here: " << probe.err;
+}
+
+void MpiFull::SetUp() {
+  if (std::getenv("GRIDIRON_TEST_MPI_FULL") == nullptr) GTEST_SKIP() << "of the label full";
+  Mpi::SetUp();
 }
 
 std::string ranks_line(int ranks) {
@@ -60,7 +68,7 @@ std::string other_line(int ranks) {
 }
 
 ProgramResult run_ranks(const TemporaryFolder& folder, int ranks, const Words& arguments) {
-  return run_shell(folder.folder(), ranks_line(ranks) + joined(arguments, "OUT"));
+  return run_shell(folder.folder(), kAtMost + ranks_line(ranks) + joined(arguments, "OUT"));
 }
 
 std::map<std::string, std::string> files_of(const fs::path& folder) {
@@ -79,7 +87,7 @@ void expect_same_files(const TemporaryFolder& folder, const Words& arguments) {
   }
   const ProgramResult alone = run_shell(folder.folder(), "\"$GRIDIRON\"" + joined(arguments, "alone"));
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
-  const ProgramResult ranks = run_shell(folder.folder(), ranks_line(3) + joined(arguments, "ranks"));
+  const ProgramResult ranks = run_shell(folder.folder(), kAtMost + ranks_line(3) + joined(arguments, "ranks"));
   ASSERT_EQ(ranks.exit_code, 0) << ranks.err;
   const std::map<std::string, std::string> expected = files_of(folder.path("alone"));
   const std::map<std::string, std::string> got = files_of(folder.path("ranks"));

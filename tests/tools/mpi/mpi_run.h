@@ -14,6 +14,12 @@ class Mpi : public ::testing::Test {
   void SetUp() override;
 };
 
+/// Of the label `full`: ranks that end too early, after which mpirun itself may hang.
+class MpiFull : public Mpi {
+ protected:
+  void SetUp() override;
+};
+
 /// @returns the part of a command line before the arguments: mpirun, so many ranks, the program.
 [[nodiscard]] std::string ranks_line(int ranks);
 /// @returns the same with the program of another version.
