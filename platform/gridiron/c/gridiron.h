@@ -92,7 +92,8 @@ typedef enum GridironClaim {
 
 /// Hands out the next tile of the frame. Each goes to exactly one core: an atomic increment where there are several.
 ///
-/// @param item  written with kGridironClaimItem: 0..gridiron_tile_count() - 1, in any order.
+/// @param item  written with kGridironClaimItem: 0..gridiron_tile_count() - 1, in any order. @returns any other value
+/// counts as kGridironClaimNone. The kernel does not see whether all tiles are handed out.
 GridironClaim gridiron_claim_item(uint32_t core, uint32_t* item);
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -217,7 +218,8 @@ typedef enum GridironShading {
 } GridironShading;
 
 /// A frame. gridiron_usual_frame() gives the rest of what camera and planes leave open. A plane has a word of 4 bytes
-/// for each pixel, tile by tile (gridiron_plane_index()); planes, image and record do not overlap.
+/// for each pixel, tile by tile (gridiron_plane_index()). Planes, image and record do not overlap, which
+/// is not checked: rendering would destroy the image.
 typedef struct GridironFrame {
   float eye[3];               ///< where the camera stands, in world space
   float at[3];                ///< the point in the middle of the picture; not `eye`
@@ -229,8 +231,8 @@ typedef struct GridironFrame {
   GridironShading shading;    ///< an enumerator
   uint32_t background_rgba;   ///< 0xAABBGGRR, where nothing is hit
   float t_far;                ///< hits farther away do not count; above 0
-  uint32_t output_depth;      ///< tile buffers in rotation, from 1 to the layout's limit (2)
-  uint32_t fetch_depth;       ///< nodes under way at once, from 1 to the layout's limit (mostly 4)
+  uint32_t output_depth;      ///< tile buffers in rotation, from 1 to the layout's limit, 2
+  uint32_t fetch_depth;       ///< nodes under way at once, from 1 to the layout's limit, 4 or more
   uint64_t color_address;     ///< main memory, plane of 0xAABBGGRR; required
   uint64_t depth_address;     ///< plane of floats, world units along the ray; 0: not requested
   uint64_t ids_address;       ///< plane of triangle numbers, 0xFFFFFFFF without a hit; 0: not requested
@@ -252,12 +254,14 @@ uint32_t gridiron_tile_count(uint32_t width, uint32_t height);
 /// Writes the record of a frame, which all cores read.
 ///
 /// @param image          opened.
-/// @param image_address  where it lies in main memory, a multiple of kGridironLineBytes.
+/// @param image_address  where it lies in main memory, a multiple of kGridironLineBytes and not 0.
 /// @param record         GridironSizes::frame_record_bytes in main memory, kGridironLineBytes-aligned.
-/// Errors: kGridironBadFrame (sizes, t_far, depths, no plane of colours, a camera without a view),
+/// Errors: kGridironBadFrame (sizes, t_far, a depth of 0, no plane of colours, image_address 0, a camera without a view:
+/// eye and at alike, up along the view, a number that is not finite or beyond 2^120),
 /// kGridironTransferAlignment (a plane or the image is misaligned), kGridironUnsupportedFrame (an unknown enumerator),
 /// kGridironUnsupportedImage (the image lacks what the layout or the accuracy reads), kGridironBadParameter (NULL, or
-/// the record is misaligned). The record is unchanged then.
+/// the record is misaligned). The record is unchanged then. The layout's limits of depths are checked by
+/// gridiron_render() (kGridironUnsupportedFrame).
 GridironStatus gridiron_make_frame(const GridironFrame* frame, const GridironImage* image, uint64_t image_address,
                                    void* record);
 
@@ -270,7 +274,8 @@ GridironStatus gridiron_make_frame(const GridironFrame* frame, const GridironIma
 /// @param spill_bytes     of it, at least GridironImage::spill_bytes.
 /// Errors: before the first tile kGridironBadFrame, kGridironUnsupportedFrame, kGridironUnsupportedImage,
 /// kGridironMissingEffect, kGridironSpillTooSmall, kGridironBadParameter; between tiles kGridironAborted,
-/// kGridironDeadline; at any time what the firmware's functions return. After kGridironOk no transfer is pending.
+/// kGridironDeadline; at any time what the firmware's functions return. After kGridironOk no transfer is pending; after
+/// an error transfers may be, so gridiron_dma_wait(core, 0xFFFFFFFF) comes before store or planes are used again.
 GridironStatus gridiron_render(uint32_t core, void* store, uint64_t record_address, uint64_t spill_address,
                                uint64_t spill_bytes);
 
