@@ -363,7 +363,10 @@ void tell_scene(const aiScene& scene, const AssimpFiles& files, const GltfText* 
   add(scene.mNumCameras, "camera");
   add(scene.mNumLights, "light");
   const unsigned kept = is_posed && scene.mNumAnimations != 0 ? 1 : 0;
-  add(scene.mNumAnimations - kept, "animation");
+  if (scene.mNumAnimations != kept) {
+    const std::string count = words_of_count(scene.mNumAnimations - kept, "animation");
+    ignored.push_back(is_posed ? count : count + ", which 'gridiron animate --animation N' shows");
+  }
   if (gltf != nullptr) {
     const Json* const scenes = member(&gltf->root(), "scenes");
     if (scenes != nullptr && scenes->size() > 1) add(scenes->size() - 1, "other scene");
@@ -440,11 +443,13 @@ ImportedModel read_with_assimp(std::span<const std::byte> bytes, const ChildSett
   importer.SetIOHandler(&files);
   const ModelFormat format = format_of_ending(settings.ending);
   std::optional<GltfText> text;
-  if (format == ModelFormat::kGltf) text = GltfText::parse(bytes, files);
+  std::string fault;  // of the text; Assimp names none
+  if (format == ModelFormat::kGltf) text = GltfText::parse(bytes, files, fault);
   if (text) text->require_readable();
   if (importer.ReadFile(files.name(), aiProcess_Triangulate) == nullptr) {
     const std::string words = importer.GetErrorString();
     if (is_shortage(words)) throw std::bad_alloc();
+    if (!fault.empty()) throw ImportError(fault);
     throw ImportError(words.empty() ? "Assimp cannot read it" : "Assimp cannot read it: " + words);
   }
   const std::string reader_format = words_of_format(settings.ending, importer);

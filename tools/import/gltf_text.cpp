@@ -187,19 +187,32 @@ std::string words_in(const Json& object, const char* key) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-std::optional<GltfText> GltfText::parse(std::span<const std::byte> bytes, AssimpFiles& files) {
+std::optional<GltfText> GltfText::parse(std::span<const std::byte> bytes, AssimpFiles& files, std::string& fault) {
   GltfText result(files);
   std::span<const std::byte> json = bytes;
   if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) {
     json = {};
-    if (!find_chunks(bytes, json, result.chunk_)) return std::nullopt;
+    if (!find_chunks(bytes, json, result.chunk_)) {
+      fault = "is no whole binary glTF of version 2";
+      return std::nullopt;
+    }
   }
   const char* const begin = reinterpret_cast<const char*>(json.data());
   // A file may end in zeros, which are no JSON.
   std::size_t size = json.size();
   while (size != 0 && begin[size - 1] == '\0') --size;
-  result.root_ = Json::parse(begin, begin + size, nullptr, /*allow_exceptions=*/false);
-  if (!result.root_.is_object()) return std::nullopt;
+  try {
+    result.root_ = Json::parse(begin, begin + size);
+  } catch (const Json::parse_error& error) {
+    const std::size_t place = std::min(error.byte, size);
+    const auto line = 1 + std::count(begin, begin + place, '\n');
+    fault = place == size ? "its JSON ends early" : "its JSON is wrong in line " + std::to_string(line);
+    return std::nullopt;
+  }
+  if (!result.root_.is_object()) {
+    fault = "its JSON is no object";
+    return std::nullopt;
+  }
   return result;
 }
 

@@ -23,8 +23,9 @@ using Json = nlohmann::json;
 class GltfText {
  public:
   /// @returns nothing if the bytes are no glTF 2.0 file, as text or binary, or its JSON is damaged.
-  /// @param bytes, files  outlive the result.
-  [[nodiscard]] static std::optional<GltfText> parse(std::span<const std::byte> bytes, AssimpFiles& files);
+  /// @param bytes, files  outlive the result. @param fault  then says which, for words behind the file's name.
+  [[nodiscard]] static std::optional<GltfText> parse(std::span<const std::byte> bytes, AssimpFiles& files,
+                                                     std::string& fault);
 
   [[nodiscard]] const Json& root() const { return root_; }
 

@@ -92,8 +92,11 @@ void read_gltf(const aiMaterial& source, SceneMaterial& material) {
   }
 }
 
-// @returns whether a highlight was left out.
-bool read_phong(const aiMaterial& source, ModelFormat format, SceneMaterial& material) {
+struct LeftOut {
+  bool highlight = false, clearness = false;
+};
+
+LeftOut read_phong(const aiMaterial& source, ModelFormat format, SceneMaterial& material) {
   aiColor3D diffuse(1, 1, 1), specular(0, 0, 0);
   ai_real opacity = 1, index = 1, exponent = 0;
   int model = 0;
@@ -107,7 +110,7 @@ bool read_phong(const aiMaterial& source, ModelFormat format, SceneMaterial& mat
   (void)source.Get(AI_MATKEY_SHININESS, exponent);
   // A reflectivity is a share of light, so linear: the MTL specification gives Kd no other meaning.
   material.color = Vec3(share_of(diffuse.r), share_of(diffuse.g), share_of(diffuse.b));
-  bool drops_highlight = false;
+  LeftOut left_out;
   const float share = brightness_of(specular);
   // Of OBJ's models of illumination 3 to 9 have mirrors. The others mean a highlight alone, which no material of ours
   // has: most programs write 2 for everything, and a mirror in its place is not what they mean.
@@ -121,10 +124,12 @@ bool read_phong(const aiMaterial& source, ModelFormat format, SceneMaterial& mat
     material.kd = 1.0f - material.ks;
     material.shine = std::isfinite(exponent) ? std::clamp(exponent, 0.0f, kMostShine) : 0.0f;
   } else {
-    drops_highlight = share > 0 && exponent > 0;
+    left_out.highlight = share > 0 && exponent > 0;
   }
-  set_transmittance(1.0f - share_of(opacity), index_of(index), material);
-  return drops_highlight;
+  // Nobody models what cannot be seen: exporters write 0 where they mean 1.
+  left_out.clearness = share_of(opacity) == 0.0f;
+  if (!left_out.clearness) set_transmittance(1.0f - share_of(opacity), index_of(index), material);
+  return left_out;
 }
 
 Wrap wrap_of(int mode) {
@@ -153,6 +158,7 @@ void ModelMaterials::tell(std::vector<std::string>& ignored) const {
     ignored.push_back(words_of_count(other_textures_.size(), "texture") + " of something other than base colour");
   }
   add(highlights_, "highlights without mirrors");
+  add(clear_, "full transparency");
   add(emissions_, "emission");
   add(masks_, "cut-outs");
   add(transforms_, "shifted or scaled textures");
@@ -181,8 +187,10 @@ ModelMaterial ModelMaterials::read(unsigned index) {
   }
   if (format_ == ModelFormat::kGltf) {
     read_gltf(source, result.material);
-  } else if (read_phong(source, format_, result.material)) {
-    ++highlights_;
+  } else {
+    const LeftOut left_out = read_phong(source, format_, result.material);
+    highlights_ += left_out.highlight ? 1 : 0;
+    clear_ += left_out.clearness ? 1 : 0;
   }
   count_ignored(source);
   read_texture(source, index, result);
@@ -267,7 +275,7 @@ void ModelMaterials::read_gltf_places(const Json& texture, ModelMaterial& result
 const Texture* ModelMaterials::find_texture(const std::string& name) {
   auto found = textures_.find(name);
   if (found == textures_.end()) {
-    std::string reason = "is missing or cannot be read";
+    std::string reason = "is no PNG or JPEG, damaged, or too large";
     found = textures_.emplace(name, load_texture(name, reason)).first;
     if (!found->second) unread_.push_back(in_quotes(name) + ", which " + reason);
   }
@@ -299,8 +307,12 @@ std::optional<Texture> ModelMaterials::load_texture(const std::string& name, std
   std::ranges::replace(path, '\\', '/');
   const std::filesystem::path folder = std::filesystem::path(files_.name()).parent_path();
   const std::string whole = (folder / path).string();
-  if (!files_.Exists(whole.c_str())) return std::nullopt;  // a texture has its own words where it is missing
+  if (!files_.Exists(whole.c_str())) {
+    reason = "is missing";
+    return std::nullopt;
+  }
   const auto bytes = files_.read(whole);
+  if (!bytes) reason = "cannot be read";
   return bytes ? decode(*bytes) : std::nullopt;
 }
 

@@ -65,7 +65,8 @@ class ModelMaterials {
   std::map<std::string, std::optional<Texture>> textures_;
   std::vector<std::string> unread_;
   std::set<std::string> other_textures_;
-  std::size_t highlights_ = 0, emissions_ = 0, masks_ = 0, transforms_ = 0;  // materials whose one is ignored
+  std::size_t highlights_ = 0, clear_ = 0, emissions_ = 0, masks_ = 0,
+              transforms_ = 0;  // materials whose one is ignored
 };
 
 }  // namespace gridiron::tool

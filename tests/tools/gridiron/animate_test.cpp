@@ -381,7 +381,7 @@ TEST(Animate, WhatCannotBeDoneIsTold) {
     std::string words;
   } cases[] = {
       {{"nowhere.ply", "-o", "out"}, 1, "nowhere.ply: No such file"},
-      {{"empty", "-o", "out"}, 1, "empty: holds no file that ends with .ply or .nff\n"},
+      {{"empty", "-o", "out"}, 1, "empty: holds no mesh, no model and no text scene\n"},
       {{".", "-o", "out"}, 1, ".: holds files that end with .ply and with .nff; name the ones that are frames\n"},
       {{"a.ply", "twin", "-o", "out"}, 2, "two frames would be called a.png"},
       {{"a.ply", "bad.ply", "-o", "out"}, 1, "bad.ply:3: "},

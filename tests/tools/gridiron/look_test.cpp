@@ -240,6 +240,23 @@ TEST(Look, TheGroundLiesJustBelow) {
   }
 }
 
+TEST(Look, MayDisappointAndSaysWhy) {
+  const auto notes = [](float away, const Vec3& eye) {
+    TestMesh sphere = make_sphere(8, 12, 1);
+    for (Vec3& vertex : sphere.vertices) vertex.x += away;
+    SceneInput input = input_of(sphere);
+    const tool::PointSource points = [&sphere](const tool::PointVisitor& visitor) { visitor(sphere.vertices); };
+    const Camera camera{eye + Vec3(away, 0, 0), Vec3(away, 0, 0), {0, 0, 1}, 0.5f};
+    tool::apply_look(input, {.is_studio = true}, camera, tool::look_bounds_of(points, tool::kUsualUp));
+    return input.look_notes;
+  };
+  EXPECT_TRUE(notes(0, {0, 0.5f, 5}).empty());
+  ASSERT_EQ(notes(1e5f, {0, 0.5f, 5}).size(), 1u);
+  EXPECT_NE(notes(1e5f, {0, 0.5f, 5})[0].find("far from the origin"), std::string::npos);
+  ASSERT_EQ(notes(0, {0, -5, 0.1f}).size(), 1u);
+  EXPECT_NE(notes(0, {0, -5, 0.1f})[0].find("--ground off"), std::string::npos);
+}
+
 TEST(Look, ColorsOfTheFileAreKeptUnlessOneIsGiven) {
   const auto input = [] {
     SceneInput made = input_of(make_sphere(8, 12, 1));

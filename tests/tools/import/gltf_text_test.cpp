@@ -20,10 +20,13 @@ std::span<const std::byte> bytes_of(const std::string& text) {
 // A file and what is read from it, in this process.
 struct Parsed {
   explicit Parsed(std::string content)
-      : file(std::move(content)), files("lost/a.gltf", bytes_of(file)), text(GltfText::parse(bytes_of(file), files)) {}
+      : file(std::move(content)),
+        files("lost/a.gltf", bytes_of(file)),
+        text(GltfText::parse(bytes_of(file), files, fault)) {}
 
   std::string file;
   AssimpFiles files;
+  std::string fault;
   std::optional<GltfText> text;
 };
 

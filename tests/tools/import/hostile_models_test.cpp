@@ -159,6 +159,15 @@ TEST(HostileModels, EachEndsWithAMeshOrAnErrorThatNamesIt) {
 }
 
 // Cut at places all over the file, and with bytes replaced at random. The seed reruns a case.
+TEST(HostileModels, DamagedTextsAreNamedByTheirLine) {
+  std::string text = gltf_text(small());
+  const std::string half = error_of_file("a.gltf", text.substr(0, text.size() - 9));
+  EXPECT_NE(half.find("a.gltf: its JSON ends early"), std::string::npos) << half;
+  text.insert(text.find('{') + 1, "\n\n,");
+  EXPECT_NE(error_of_file("a.gltf", text).find("a.gltf: its JSON is wrong in line 3"), std::string::npos);
+  EXPECT_NE(error_of_file("a.glb", std::string("glTF\1\0\0\0\24\0\0\0{}", 14)).find("version 2"), std::string::npos);
+}
+
 TEST(HostileModels, DamagedFilesAreNoDanger) {
   const std::vector<Vec3> normals(small().vertices.size(), Vec3(0, 0, 1));
   const std::vector<std::array<float, 2>> uvs(small().vertices.size(), {0.5f, 0.5f});

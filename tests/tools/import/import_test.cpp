@@ -216,8 +216,24 @@ TEST(Import, UnreadableTexturesAreReported) {
   const std::string more = ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"lost.png\"}]";
   const Read got = read_file_of(
       "a.gltf", gltf_text(square(), {.material = material, .more = more, .uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}}));
-  EXPECT_TRUE(got.ignores("the texture 'lost.png', which is missing or cannot be read"))
-      << testing::PrintToString(got.report.ignored);
+  EXPECT_TRUE(got.ignores("the texture 'lost.png', which is missing")) << testing::PrintToString(got.report.ignored);
+  const TemporaryFolder folder("a.mtl", "newmtl one\nmap_Kd a.tga\n");
+  folder.write("a.tga", "no picture");
+  folder.write("a.obj", "mtllib a.mtl\nusemtl one\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+  const Read there = read(folder, "a.obj");
+  EXPECT_TRUE(there.ignores("the texture 'a.tga', which is no PNG or JPEG, damaged, or too large"))
+      << testing::PrintToString(there.report.ignored);
+}
+
+// Of what nobody would see an exporter means the opposite.
+TEST(Import, WhatIsWhollyClearIsOpaque) {
+  const TemporaryFolder folder("a.mtl", "newmtl one\nKd 1 0 0\nd 0\nnewmtl two\nKd 1 0 0\nd 0.25\n");
+  folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl one\nf 1 2 3\nusemtl two\nf 1 3 2\n");
+  const Read got = read(folder, "a.obj");
+  EXPECT_TRUE(got.ignores("full transparency of 1 material")) << testing::PrintToString(got.report.ignored);
+  ASSERT_EQ(got.mesh.surface.materials.size(), 2u);
+  EXPECT_EQ(got.mesh.surface.materials[0].transmittance, 0.0f);
+  EXPECT_EQ(got.mesh.surface.materials[1].transmittance, 0.75f);
 }
 
 TEST(Import, LinesAndPointsAreReported) {

@@ -36,7 +36,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder)
   }
   if (error) input_error(folder, "cannot be read: " + error.message());
   if (meshes.empty()) meshes = std::move(models);  // else those it was converted from, perhaps
-  if (meshes.empty() && scenes.empty()) input_error(folder, "holds no file that ends with .ply or .nff");
+  if (meshes.empty() && scenes.empty()) input_error(folder, "holds no mesh, no model and no text scene");
   if (!meshes.empty() && !scenes.empty()) {
     input_error(folder, "holds files that end with .ply and with .nff; name the ones that are frames");
   }

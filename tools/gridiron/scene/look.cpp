@@ -45,6 +45,7 @@ constexpr std::uint32_t kGroundSegments = 48, kGroundRings = 12;
 constexpr double kGroundRadius = 24;       // in radii of the object
 constexpr double kGroundGap = 1.0 / 4096;  // below the object, likewise: they never share a plane
 constexpr double kOcclusionRadius = 0.7;   // likewise
+constexpr double kFarRadii = 1000;         // likewise: from there on rounding is seen
 
 double to_linear(double srgb) {
   return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
@@ -353,7 +354,15 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
   if (has_occlusion) effects.occlusion_radius = static_cast<float>(kOcclusionRadius * directions.radius);
   // Without ambient light what no light reaches would be black.
   const bool has_fill = (lights.key || lights.area) && (lights.head || !has_occlusion);
+  // Soft shadows and normals need places that are finer than the mesh's parts.
+  if (glm::length(directions.middle) > kFarRadii * directions.radius) {
+    input.look_notes.emplace_back(
+        "it lies so far from the origin that floats round its places: shadows and normals may show facets");
+  }
   if (request.ground.value_or(is_studio)) {
+    if (glm::dot(DVec3(view.eye), directions.up) < bounds.lowest) {
+      input.look_notes.emplace_back("it is seen from below the ground, which hides it; --ground off shows it");
+    }
     if (effects.materials.size() >= kMostSceneMaterials)
       input_error(input.path, "has too many materials for a ground; --ground off renders it");
     add_ground(mesh, directions, bounds, {.color = kGroundColor}, effects);

@@ -274,6 +274,9 @@ void tell_notes(const SceneInput& input, bool tells_model) {
                  input.path.c_str(), words_of_count(input.colorless_triangles, "triangle").c_str(),
                  words_of_count(kMostSceneMaterials).c_str());
   }
+  for (const std::string& note : input.look_notes) {
+    std::fprintf(stderr, "%s: note: %s\n", input.path.c_str(), note.c_str());
+  }
   if (!input.text) return;
   for (const SceneNote& note : input.text->notes) {
     std::fprintf(stderr, "%s:%llu: note: %s\n", input.path.c_str(), static_cast<unsigned long long>(note.line),

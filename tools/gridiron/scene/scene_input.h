@@ -50,6 +50,7 @@ struct SceneInput {
   std::optional<TextScene> text{};        ///< beside a Mesh and its effects
   std::optional<ImportReport> model{};    ///< of a Mesh of no text scene
   std::uint64_t colorless_triangles = 0;  ///< whose colours a look has no material for
+  std::vector<std::string> look_notes{};  ///< why a look may disappoint
 };
 
 inline constexpr const char* kSceneExpected =
