@@ -256,8 +256,8 @@ uint32_t gridiron_tile_count(uint32_t width, uint32_t height);
 /// @param image          opened.
 /// @param image_address  where it lies in main memory, a multiple of kGridironLineBytes and not 0.
 /// @param record         GridironSizes::frame_record_bytes in main memory, kGridironLineBytes-aligned.
-/// Errors: kGridironBadFrame (sizes, t_far, a depth of 0, no plane of colours, image_address 0, a camera without a view:
-/// eye and at alike, up along the view, a number that is not finite or beyond 2^120),
+/// Errors: kGridironBadFrame (sizes, t_far, a depth of 0, no plane of colours, image_address 0, a camera without a
+/// view: eye and at alike, up along the view, a number that is not finite or beyond 2^120),
 /// kGridironTransferAlignment (a plane or the image is misaligned), kGridironUnsupportedFrame (an unknown enumerator),
 /// kGridironUnsupportedImage (the image lacks what the layout or the accuracy reads), kGridironBadParameter (NULL, or
 /// the record is misaligned). The record is unchanged then. The layout's limits of depths are checked by
