@@ -11,7 +11,7 @@
 namespace gridiron::test {
 namespace {
 
-constexpr tool::ImportOptions kLimits = {.memory_bytes = std::uint64_t{512} << 20, .most_seconds = 3};
+const tool::ImportOptions kLimits = {.memory_bytes = std::uint64_t{512} << 20, .most_seconds = 3};
 
 // @returns the error; empty: a mesh. Anything else ends the test.
 std::string error_of(const TemporaryFolder& folder, const std::string& name,
