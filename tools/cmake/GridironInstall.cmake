@@ -58,8 +58,8 @@ function(gridiron_install_package)
     ${consumer}/copy_port.h ${consumer}/port_picture.cpp ${consumer}/port_contract.cpp ${consumer}/hills.h
     ${consumer}/picture.h
     DESTINATION ${port_dir} COMPONENT platform)
-  install(PROGRAMS ${PROJECT_SOURCE_DIR}/tools/checks/deepest_stack ${PROJECT_SOURCE_DIR}/tools/checks/compiler_helpers
-    DESTINATION ${port_dir} COMPONENT platform)
+  install(PROGRAMS ${PROJECT_SOURCE_DIR}/tools/checks/deepest_stack DESTINATION ${port_dir} COMPONENT platform)
+  install(FILES ${PROJECT_SOURCE_DIR}/tools/checks/compiler_helpers DESTINATION ${port_dir} COMPONENT platform)
   set(toolchains ${PROJECT_SOURCE_DIR}/tools/cmake/toolchains)
   install(FILES ${toolchains}/cortex_m7.cmake DESTINATION ${port_dir}/toolchains COMPONENT platform)
   install(DIRECTORY ${toolchains}/glm DESTINATION ${port_dir}/toolchains COMPONENT platform)
