@@ -76,6 +76,19 @@ void RunningProgram::wait_until_caught(int signal) const {
   ADD_FAILURE() << "signal " << signal << " is not caught";
 }
 
+pid_t RunningProgram::stop_child() const {
+  const std::string id = std::to_string(process_);
+  for (int i = 0; i < 60000; ++i) {
+    std::ifstream file("/proc/" + id + "/task/" + id + "/children");
+    if (pid_t child = -1; file >> child) {
+      ::kill(child, SIGSTOP);
+      return child;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return -1;
+}
+
 ProgramResult RunningProgram::wait() {
   int status = 0;
   ::waitpid(process_, &status, 0);

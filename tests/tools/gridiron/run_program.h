@@ -33,6 +33,8 @@ class RunningProgram {
   void send(int signal) const;
   /// Until the program catches a signal, a minute at most: before that the signal would end it.
   void wait_until_caught(int signal) const;
+  /// Waits for its first child, a minute at most, and stops that (SIGSTOP). @returns its process; -1 without one.
+  [[nodiscard]] pid_t stop_child() const;
   [[nodiscard]] ProgramResult wait();
   /// Waits so long at most, then kills it: exit_code is -SIGKILL.
   [[nodiscard]] ProgramResult wait(std::chrono::milliseconds most);

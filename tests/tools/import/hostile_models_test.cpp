@@ -1,7 +1,5 @@
 // Hostile and damaged models: each ends with a mesh or with an error that names the file, within its limits.
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
-
 #include "base/failure.h"
 #include "gltf_writer.h"
 #include "model_files.h"
@@ -259,14 +257,13 @@ TEST(HostileModels, BombsOfMemoryEndAtTheLimit) {
   EXPECT_NE(error.find("--import-"), std::string::npos) << error;
 }
 
+// A limit that has passed before any answer can come: how fast the machine is does not matter.
 TEST(HostileModels, LimitsOfTimeHold) {
-  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  text += repeated("f 1 2 3\n", 1500000);
-  const TemporaryFolder folder("slow.obj", text);
-  const auto begin = std::chrono::steady_clock::now();
-  const std::string error = error_of(folder, "slow.obj", {.memory_bytes = std::uint64_t{4} << 30, .most_seconds = 1});
-  EXPECT_NE(error.find("takes more than 1 s; --import-time allows more"), std::string::npos) << error;
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+  const TemporaryFolder folder("late.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(error_of(folder, "late.obj"), "");
+  const std::string error =
+      error_of(folder, "late.obj", {.memory_bytes = std::uint64_t{512} << 20, .most_seconds = 0});
+  EXPECT_NE(error.find("takes more than 0 s; --import-time allows more"), std::string::npos) << error;
 }
 
 }  // namespace

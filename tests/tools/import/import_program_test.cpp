@@ -1,5 +1,7 @@
 // Models and the whole program: the picture of a model is that of its PLY; commands, notes and errors.
 // SPDX-License-Identifier: Apache-2.0
+#include <signal.h>
+
 #include <nlohmann/json.hpp>
 
 #include "gltf_writer.h"
@@ -153,11 +155,13 @@ TEST(ImportProgram, InterruptsEndTheChildToo) {
   const TemporaryFolder folder("slow.obj", text);
   RunningProgram program(folder.folder(), {"info", "slow.obj"});
   program.wait_until_caught(SIGINT);
-  ::usleep(300000);
+  const pid_t child = program.stop_child();
+  ASSERT_GT(child, 0);
   program.send(SIGINT);
-  const ProgramResult result = program.wait(std::chrono::seconds(5));
+  const ProgramResult result = program.wait(std::chrono::minutes(1));
   EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_NE(result.err.find("interrupted"), std::string::npos) << result.err;
+  EXPECT_NE(::kill(child, 0), 0) << "the child is left";
 }
 
 }  // namespace
