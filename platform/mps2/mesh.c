@@ -70,7 +70,7 @@ GridironStatus mesh_prepare(void* memory, uint32_t bytes, MeshFrame* frame) {
   wanted.width = kWidth;
   wanted.height = kHeight;
   wanted.color_address = (uintptr_t)color;
-  status = gridiron_make_frame(&wanted, &image, (uintptr_t)image_bytes, record);
+  status = gridiron_make_frame(&wanted, &image, (uintptr_t)image_bytes, record, NULL);
   if (status != kGridironOk) return status;
   frame->color = color;
   frame->record_address = (uint32_t)(uintptr_t)record;

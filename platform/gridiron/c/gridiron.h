@@ -92,14 +92,19 @@ typedef enum GridironClaim {
 
 /// Hands out the next tile of the frame. Each goes to exactly one core: an atomic increment where there are several.
 ///
-/// @param item  written with kGridironClaimItem: 0..gridiron_tile_count() - 1, in any order. @returns any other value
-/// counts as kGridironClaimNone. The kernel does not see whether all tiles are handed out.
+/// @param item  written with kGridironClaimItem: 0..gridiron_tile_count() - 1, in any order. Another number, or none,
+///              ends the frame with kGridironBadFrame. The kernel does not see whether all tiles are handed out.
+/// @returns an enumerator. Any other value ends the frame with kGridironBadParameter.
 GridironClaim gridiron_claim_item(uint32_t core, uint32_t* item);
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Sizes of the layout that gridiron_c.cpp was compiled for.
 
 /// The memory of a core, in bytes, and what its layout renders.
+///
+/// GRIDIRON_STORE_BYTES is `store_bytes` for a static array. The build defines it for firmware and gridiron_c.cpp, by
+/// STORE_BYTES of gridiron_c_library() or -DGRIDIRON_STORE_BYTES=. gridiron_c.cpp does not compile with a number that
+/// is not the layout's; the compiler's message has both. gridiron_render() cannot see the size of an array.
 typedef struct GridironSizes {
   uint32_t store_bytes;         ///< local store, kGridironLineBytes-aligned, in the core's data memory
   uint32_t stack_budget_bytes;  ///< deepest stack of gridiron_render()
@@ -184,10 +189,10 @@ typedef struct GridironImage {
   uint64_t internal[112];   ///< for gridiron_make_frame()
 } GridironImage;
 
-/// Where an image is wrong.
+/// What is wrong with an image, or with a frame.
 typedef struct GridironFault {
-  uint64_t byte_offset;  ///< place of the offending field
-  const char* field;     ///< its name in core/SPEC.md, a constant; "" without a fault
+  uint64_t byte_offset;  ///< place of the offending field in the image; in GridironFrame, or its size for a parameter
+  const char* field;     ///< a constant: its name in core/SPEC.md, or of the member or parameter; "" without a fault
 } GridironFault;
 
 /// Checks every byte of an image that the kernel relies on, once for all frames.
@@ -218,8 +223,9 @@ typedef enum GridironShading {
 } GridironShading;
 
 /// A frame. gridiron_usual_frame() gives the rest of what camera and planes leave open. A plane has a word of 4 bytes
-/// for each pixel, tile by tile (gridiron_plane_index()). Planes, image and record do not overlap, which
-/// is not checked: rendering would destroy the image.
+/// for each pixel, tile by tile (gridiron_plane_index()). Planes and image do not overlap, which gridiron_make_frame()
+/// checks. They do not overlap record, store and memory for waiting rays either. That is not checked: their places are
+/// not known then.
 typedef struct GridironFrame {
   float eye[3];               ///< where the camera stands, in world space
   float at[3];                ///< the point in the middle of the picture; not `eye`
@@ -232,7 +238,7 @@ typedef struct GridironFrame {
   uint32_t background_rgba;   ///< 0xAABBGGRR, where nothing is hit
   float t_far;                ///< hits farther away do not count; above 0
   uint32_t output_depth;      ///< tile buffers in rotation, from 1 to the layout's limit, 2
-  uint32_t fetch_depth;       ///< nodes under way at once, from 1 to the layout's limit, 4 or more
+  uint32_t fetch_depth;       ///< nodes under way at once, from 1 to the layout's limit, 2 or more; not read by grids
   uint64_t color_address;     ///< main memory, plane of 0xAABBGGRR; required
   uint64_t depth_address;     ///< plane of floats, world units along the ray; 0: not requested
   uint64_t ids_address;       ///< plane of triangle numbers, 0xFFFFFFFF without a hit; 0: not requested
@@ -256,14 +262,20 @@ uint32_t gridiron_tile_count(uint32_t width, uint32_t height);
 /// @param image          opened.
 /// @param image_address  where it lies in main memory, a multiple of kGridironLineBytes and not 0.
 /// @param record         GridironSizes::frame_record_bytes in main memory, kGridironLineBytes-aligned.
-/// Errors: kGridironBadFrame (sizes, t_far, a depth of 0, no plane of colours, image_address 0, a camera without a
-/// view: eye and at alike, up along the view, a number that is not finite or beyond 2^120),
-/// kGridironTransferAlignment (a plane or the image is misaligned), kGridironUnsupportedFrame (an unknown enumerator),
-/// kGridironUnsupportedImage (the image lacks what the layout or the accuracy reads), kGridironBadParameter (NULL, or
-/// the record is misaligned). The record is unchanged then. The layout's limits of depths are checked by
-/// gridiron_render() (kGridironUnsupportedFrame).
+/// @param fault          written if not NULL: the first member of GridironFrame that is refused, with its offset there,
+///                       or the parameter `frame`, `image`, `image_address` or `record`, with sizeof(GridironFrame).
+/// Errors, after which the record is unchanged: kGridironBadFrame (sizes, t_far, a depth of 0, no plane of colours,
+/// image_address 0; planes that overlap each other or the image, or end beyond the last address; a camera without a
+/// view: eye and at alike, up along the view, a number that is not finite or beyond 2^120), kGridironTransferAlignment
+/// (a plane or the image is misaligned), kGridironUnsupportedFrame (an unknown enumerator; a depth beyond the layout's
+/// limit; what the layout does not trace), kGridironUnsupportedImage (the image lacks what the layout or the accuracy
+/// reads, or exceeds the layout's sizes), kGridironMissingEffect (the layout was built without effects that shading or
+/// image call for), kGridironBadParameter (NULL, or the record is misaligned).
+///
+/// Address 0 means "none" in a frame's record. Where main memory begins at 0, image and planes begin behind its first
+/// line.
 GridironStatus gridiron_make_frame(const GridironFrame* frame, const GridironImage* image, uint64_t image_address,
-                                   void* record);
+                                   void* record, GridironFault* fault);
 
 /// Renders every tile that this core can claim. All cores of a frame make this call.
 ///

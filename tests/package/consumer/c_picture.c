@@ -81,6 +81,7 @@ static uint64_t plane_hash(const uint32_t* plane) {
   return hash;
 }
 
+// @param what  the step, or the field that is at fault.
 static int fail(const char* what, GridironStatus status) {
   fprintf(stderr, "c_picture: %s: %s\n", what, gridiron_status_text(status));
   return 1;
@@ -107,8 +108,9 @@ int main(void) {
                                 (size_t)need.scratch_bytes);
   if (status != kGridironOk) return fail("image", status);
   GridironImage image;
-  status = gridiron_open_image(image_bytes, (size_t)need.image_bytes, &image, NULL);
-  if (status != kGridironOk) return fail("image", status);
+  GridironFault fault;
+  status = gridiron_open_image(image_bytes, (size_t)need.image_bytes, &image, &fault);
+  if (status != kGridironOk) return fail(fault.field, status);
 
   // 2. The frame.
   GridironFrame frame = gridiron_usual_frame();
@@ -119,8 +121,8 @@ int main(void) {
   frame.height = kHeight;
   frame.color_address = address_of(color);
   frame.depth_address = address_of(depth);
-  status = gridiron_make_frame(&frame, &image, address_of(image_bytes), record);
-  if (status != kGridironOk) return fail("frame", status);
+  status = gridiron_make_frame(&frame, &image, address_of(image_bytes), record, &fault);
+  if (status != kGridironOk) return fail(fault.field, status);
 
   // 3. The picture, by core 0.
   tile_count = gridiron_tile_count(kWidth, kHeight);
