@@ -197,7 +197,7 @@ constexpr GridironFault parameter(const char* name) {
 }
 
 // What a field of the frame record is made of.
-GridironFault fault_of(const FrameFault& fault) {
+[[gnu::always_inline]] inline GridironFault fault_of(const FrameFault& fault) {
   switch (fault.place) {
     case offsetof(FrameHead, width):
       return GRIDIRON_MEMBER(width);

@@ -13,8 +13,7 @@ extern "C" {
 #endif
 
 enum {
-  kBoardQueueDepth = 16,    ///< commands that the port holds
-  kBoardStoreBytes = 10880  ///< of the layout; firmware.cpp compares it with gridiron_sizes()
+  kBoardQueueDepth = 16  ///< commands that the port holds
 };
 
 /// A copy that was started and not waited for.
@@ -28,7 +27,7 @@ typedef struct BoardCommand {
 
 /// Memory of the worker besides its stack: all that it may write.
 typedef struct BoardWorker {
-  unsigned char store[kBoardStoreBytes];
+  unsigned char store[GRIDIRON_STORE_BYTES];
   BoardCommand commands[kBoardQueueDepth];  ///< in the order in which they were started
   uint32_t command_count;
   uint32_t transfers;       ///< started in this frame

@@ -29,7 +29,7 @@ namespace gridiron::port {
 namespace {
 
 using Layout = TreeLayout16K;
-static_assert(sizeof(LocalStore<Layout>) == kBoardStoreBytes);
+static_assert(sizeof(LocalStore<Layout>) == GRIDIRON_STORE_BYTES);
 
 constexpr std::uint32_t kMostTiles = 65536;  // results lie in the job's memory
 constinit RunControl control{};
@@ -85,7 +85,7 @@ bool lies_in_job(std::uint32_t address, std::uint32_t bytes) {
 
 bool lies_in_store(const void* local, std::uint32_t bytes) {
   const std::uint32_t offset = address_of(local) - address_of(board_worker.store);
-  return offset <= kBoardStoreBytes && bytes <= kBoardStoreBytes - offset;
+  return offset <= GRIDIRON_STORE_BYTES && bytes <= GRIDIRON_STORE_BYTES - offset;
 }
 
 // Makes the copies of some tags and takes them off the queue. The queue is the worker's: nothing in it is trusted.
@@ -176,10 +176,11 @@ constinit TileResult mesh_tiles[64]{};
 // The image that makes its scene by itself.
 RunExit render_mesh() {
   MeshFrame frame{};
+  GridironFault fault{};
   const auto bytes = static_cast<std::uint32_t>(number_option("memory=", kMeshMemoryBytes));
-  const GridironStatus prepared = mesh_prepare(const_cast<std::byte*>(job_begin), bytes, &frame);
+  const GridironStatus prepared = mesh_prepare(const_cast<std::byte*>(job_begin), bytes, &frame, &fault);
   if (prepared != kGridironOk) {
-    print("mesh: ", gridiron_status_text(prepared), "\n");
+    print("mesh: ", fault.field, fault.field[0] != 0 ? ": " : "", gridiron_status_text(prepared), "\n");
     return RunExit::kJobRefused;
   }
   tiles = mesh_tiles;

@@ -38,7 +38,8 @@ static void make_hills(float* vertices, uint32_t* indices) {
   }
 }
 
-GridironStatus mesh_prepare(void* memory, uint32_t bytes, MeshFrame* frame) {
+GridironStatus mesh_prepare(void* memory, uint32_t bytes, MeshFrame* frame, GridironFault* fault) {
+  *fault = (GridironFault){0, ""};
   Room room = {memory, bytes, 0};
   float* const vertices = take(&room, sizeof(float[kEdge * kEdge][3]));
   uint32_t* const indices = take(&room, sizeof(uint32_t[kSquares * kSquares][6]));
@@ -61,7 +62,7 @@ GridironStatus mesh_prepare(void* memory, uint32_t bytes, MeshFrame* frame) {
   if (status != kGridironOk) return status;
 
   GridironImage image;
-  status = gridiron_open_image(image_bytes, (size_t)need.image_bytes, &image, NULL);
+  status = gridiron_open_image(image_bytes, (size_t)need.image_bytes, &image, fault);
   if (status != kGridironOk) return status;
   GridironFrame wanted = gridiron_usual_frame();
   wanted.eye[0] = 0.5f;
@@ -70,7 +71,7 @@ GridironStatus mesh_prepare(void* memory, uint32_t bytes, MeshFrame* frame) {
   wanted.width = kWidth;
   wanted.height = kHeight;
   wanted.color_address = (uintptr_t)color;
-  status = gridiron_make_frame(&wanted, &image, (uintptr_t)image_bytes, record, NULL);
+  status = gridiron_make_frame(&wanted, &image, (uintptr_t)image_bytes, record, fault);
   if (status != kGridironOk) return status;
   frame->color = color;
   frame->record_address = (uint32_t)(uintptr_t)record;

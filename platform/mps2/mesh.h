@@ -24,8 +24,9 @@ typedef struct MeshFrame {
 ///
 /// @param memory  main memory of `bytes`, kGridironLineBytes-aligned; the frame lies in it.
 /// @param frame   written on success.
+/// @param fault   written: what is wrong with image or frame record.
 /// Errors: kGridironMemoryTooSmall; those of the calls of gridiron.h.
-GridironStatus mesh_prepare(void* memory, uint32_t bytes, MeshFrame* frame);
+GridironStatus mesh_prepare(void* memory, uint32_t bytes, MeshFrame* frame, GridironFault* fault);
 
 /// @returns FNV-1a, 64 bits, of the picture's bytes in rows: the hash that `gridiron render` prints.
 uint64_t mesh_hash(const MeshFrame* frame);

@@ -12,7 +12,7 @@ static GridironStatus start(void* local, uint64_t main_address, uint32_t bytes, 
   const GridironStatus status = gridiron_check_transfer(local, main_address, bytes, tag);
   if (status != kGridironOk) return status;
   const uintptr_t offset = (uintptr_t)local - (uintptr_t)board_worker.store;
-  if (offset >= kBoardStoreBytes || bytes > kBoardStoreBytes - offset) return kGridironTransferLocalRange;
+  if (offset >= GRIDIRON_STORE_BYTES || bytes > GRIDIRON_STORE_BYTES - offset) return kGridironTransferLocalRange;
   if (main_address > UINT32_MAX) return kGridironTransferMainRange;  // the master compares it with the job's memory
   if (board_worker.command_count == kBoardQueueDepth) return kGridironTransferQueueFull;
   BoardCommand* command = &board_worker.commands[board_worker.command_count++];

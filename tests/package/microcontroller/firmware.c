@@ -14,7 +14,7 @@ typedef struct Command {
 
 static Command queue[kQueueDepth];
 static uint32_t command_count, next_tile;
-static _Alignas(kGridironLineBytes) unsigned char store[10880];
+static _Alignas(kGridironLineBytes) unsigned char store[GRIDIRON_STORE_BYTES];
 static volatile unsigned char own_variables[FIRMWARE_OWN_BYTES];
 
 static GridironStatus start(void* to, const void* from, uint32_t bytes, uint32_t tag) {
