@@ -7,11 +7,13 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "files/command_files.h"
 #include "files/overdue_exit.h"
 #include "gridiron/program.h"
 #include "import/model_import.h"
+#include "measured_ranks.h"
 #include "mpi_ranks.h"
 
 // Tests build a program of another version.
@@ -39,11 +41,22 @@ std::string joined(int count, const char* const* values) {
   return text;
 }
 
+// `--costs FILE` before the command records what each rank does between messages (tools/mpi/scaling).
+std::optional<std::string> costs_file(int& count, char**& values) {
+  if (count < 3 || std::string_view(values[1]) != "--costs") return std::nullopt;
+  std::string file = values[2];
+  values[2] = values[0];
+  values += 2;
+  count -= 2;
+  return file;
+}
+
 // A command that failed anywhere has failed everywhere.
-ProgramEnd run(MpiRanks& ranks, int count, const char* const* values) {
+ProgramEnd run(MpiRanks& ranks, std::optional<MeasuredRanks>& measured, int count, const char* const* values) {
   try {
     ranks.require_alike(GRIDIRON_MPI_VERSION, joined(count, values));
     ProgramEnd end = run_program(count, values);
+    if (end.code == ExitCode::kDone && measured) measured->write();
     if (end.code == ExitCode::kDone) ranks.finish();
     return end;
   } catch (const Failure& failure) {
@@ -62,12 +75,15 @@ int main(int count, char** values) {
     std::fprintf(stderr, "gridiron_mpi: %s\n", failure.what());
     return static_cast<int>(failure.code());
   }
-  const RanksInUse in_use(*ranks);
+  const std::optional<std::string> costs = costs_file(count, values);
+  std::optional<MeasuredRanks> measured;
+  if (costs) measured.emplace(*ranks, *costs);
+  const RanksInUse in_use(measured ? static_cast<Ranks&>(*measured) : *ranks);
   const int error = ranks->is_first() ? STDERR_FILENO : silence();
   ProgramEnd end;
   {
     const CommandFiles files;
-    end = run(*ranks, count, values);
+    end = run(*ranks, measured, count, values);
     if (end.code == ExitCode::kDone) return 0;
     end.words += "\n";
     if (ranks->is_first()) say_last_words(end.words.c_str());
