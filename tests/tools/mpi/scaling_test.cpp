@@ -116,7 +116,8 @@ TEST(ScalingModel, MoreCostNeverTakesLessTime) {
 }
 
 TEST(ScalingCosts, AreRead) {
-  const Costs costs = read_costs("a.csv", "# words\nname,mesh\nstart_seconds,1.5\nbroadcast_bytes,1e6\n\npiece,0.25,12\npiece,1,0");
+  const Costs costs = read_costs(
+      "a.csv", "# words\nname,mesh\nstart_seconds,1.5\nbroadcast_bytes,1e6\n\npiece,0.25,12\npiece,1,0");
   EXPECT_EQ(costs.name, "mesh");
   EXPECT_EQ(costs.start_seconds, 1.5);
   EXPECT_EQ(costs.broadcast_bytes, 1e6);

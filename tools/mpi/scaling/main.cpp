@@ -37,7 +37,9 @@ double positive(const char* text, const char* name) {
 
 void run(int count, char** values) {
   if (count < 5) {
-    tool::usage_error("gridiron_mpi_scaling OUTPUT LATENCY_SECONDS BYTES_PER_SECOND COSTS...\nwrites OUTPUT.csv and OUTPUT.svg");
+    tool::usage_error(
+        "gridiron_mpi_scaling OUTPUT LATENCY_SECONDS BYTES_PER_SECOND COSTS...\n"
+        "writes OUTPUT.csv and OUTPUT.svg");
   }
   const std::string output = values[1];
   const scaling::Network network{positive(values[2], "LATENCY_SECONDS"), positive(values[3], "BYTES_PER_SECOND")};

@@ -31,8 +31,8 @@ struct Network {
   double bytes_per_second = 0;  ///< of the link of one rank; 0: without end
 };
 
-/// @returns the costs in a CSV text: lines `key,value` with the names of Costs' members, `piece,seconds,bytes`; `#` begins a
-/// comment. Errors: tool::Failure (kBadInput) with the line.
+/// @returns the costs in a CSV text: lines `key,value` with the names of Costs' members, `piece,seconds,bytes`; `#`
+/// begins a comment. Errors: tool::Failure (kBadInput) with the line.
 [[nodiscard]] Costs read_costs(const std::string& file, const std::string& text);
 
 /// @returns seconds of the whole command. Rank r has the pieces i with i mod ranks = r; each rank has one message under
