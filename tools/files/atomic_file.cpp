@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <random>
 #include <utility>
 
 #include "base/failure.h"
@@ -55,6 +56,22 @@ bool write_all(int descriptor, std::span<const std::byte> bytes, bool can_block)
   return true;
 }
 
+// The name does not contain the target's, which may have the maximum length.
+std::string pattern_of_temporary(const fs::path& target) {
+  return target.parent_path() / ".gridiron.XXXXXX";
+}
+
+// A file without a name vanishes with its process, however that ends. @returns -1 where there are none.
+int open_nameless(const fs::path& target) {
+  const fs::path folder = target.parent_path().empty() ? fs::path(".") : target.parent_path();
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (descriptor < 0) return -1;
+  // A name is given through /proc, which a container may lack.
+  if (::access(("/proc/self/fd/" + std::to_string(descriptor)).c_str(), F_OK) == 0) return descriptor;
+  (void)::close(descriptor);
+  return -1;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const fs::path& path) : target_(target_of(path)) {
@@ -70,9 +87,10 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::open_temporary() {
-  // The name does not contain the target's, which may have the maximum length.
-  std::string name = target_.file.parent_path() / ".gridiron.XXXXXX";
-  {
+  descriptor_ = open_nameless(target_.file);
+  is_nameless_ = descriptor_ >= 0;
+  if (!is_nameless_) {
+    std::string name = pattern_of_temporary(target_.file);
     const Undivided step;
     descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
     if (descriptor_ < 0) fail("create a temporary file in its folder: ");
@@ -80,7 +98,7 @@ void AtomicFile::open_temporary() {
     leftover_.remember(name);
   }
 
-  // mkostemp makes the file private; give it the rights of the file it replaces, or of any new file.
+  // The file is private; give it the rights of the file it replaces, or of any new file.
   struct stat replaced {};
   const bool replaces = ::stat(target_.file.c_str(), &replaced) == 0 && S_ISREG(replaced.st_mode);
   const mode_t mask = ::umask(0);
@@ -101,8 +119,28 @@ void AtomicFile::write(std::string_view text) {
   write(std::as_bytes(std::span(text.data(), text.size())));
 }
 
+void AtomicFile::name_temporary() {
+  constexpr int kMostTries = 100;
+  const std::string file = "/proc/self/fd/" + std::to_string(descriptor_);
+  const Undivided step;
+  for (int i = 0; i < kMostTries; ++i) {
+    std::string name = pattern_of_temporary(target_.file);
+    std::random_device random;
+    std::generate(name.end() - 6, name.end(), [&random] { return "0123456789abcdefghijklmnopqrstuv"[random() % 32]; });
+    if (::linkat(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+      temporary_ = name;
+      leftover_.remember(name);
+      is_nameless_ = false;
+      return;
+    }
+    if (errno != EEXIST) break;
+  }
+  fail("name its temporary file: ");
+}
+
 void AtomicFile::finish() {
   if (descriptor_ < 0) return;
+  if (is_nameless_) name_temporary();
   // Some file systems report a full disk only here. The descriptor is closed even after a signal.
   const int closed = ::close(std::exchange(descriptor_, -1));
   if (closed != 0 && errno != EINTR) fail("close: ");

@@ -15,7 +15,8 @@
 
 namespace gridiron::tool {
 
-/// Collects bytes for `path`: written under another name in the same folder, renamed by commit().
+/// Collects bytes for `path` in a file of the same folder that has no name, gets a temporary one by finish(), and is
+/// renamed by commit(). Where the file system knows no nameless files, it has the temporary name from the beginning.
 ///
 /// A target that is a device, a pipe or a descriptor is written through at commit, since renaming would replace it. A
 /// replaced file keeps its rights. Errors: Failure (kBadInput) with path and reason, or stop_if_interrupted()'s if a
@@ -45,6 +46,7 @@ class AtomicFile {
 
  private:
   void open_temporary();
+  void name_temporary();
   void write_through();
   /// @param action  the failed step, with ": " at its end; empty: writing itself.
   [[noreturn]] void fail(const char* action);
@@ -54,6 +56,7 @@ class AtomicFile {
   Leftover leftover_;                ///< the same, for an overdue exit
   std::vector<std::byte> deferred_;  ///< bytes for a device or pipe
   int descriptor_ = -1;
+  bool is_nameless_ = false;  ///< written, but not yet under a temporary name
 };
 
 /// Outputs of one command: every file is complete under its temporary name before the first one appears.
