@@ -274,8 +274,10 @@ TEST_F(CInterface, AnImageThatTheLayoutDoesNotReadIsRefused) {
     EXPECT_EQ(make_frame(&fault), kGridironUnsupportedImage);
     EXPECT_STREQ(fault.field, "image");
   };
-  build_.leaf_triangles = 16;
-  refused();
+  for (const std::uint32_t triangles : {gridiron_usual_build().leaf_triangles + 1, 16u}) {
+    build_.leaf_triangles = triangles;
+    refused();
+  }
   build_ = gridiron_usual_build();
   build_.has_tree = false;
   build_.has_grid = true;

@@ -1,6 +1,9 @@
 // AtomicFile: whole or not at all. SPDX-License-Identifier: Apache-2.0
 #include "files/atomic_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "base/failure.h"
 #include "files/command_files.h"
 #include "temporary_folder.h"
@@ -39,7 +42,12 @@ TEST(AtomicFile, LeavesNothingWithoutCommit) {
   {
     AtomicFile file(folder.path("a.txt"));
     file.write("hello");
-    EXPECT_EQ(folder.names().size(), 1u) << "the temporary file lies in the same folder";
+    const int nameless = ::open(folder.folder().c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (nameless >= 0) ::close(nameless);
+    EXPECT_EQ(folder.names().size(), nameless >= 0 ? 0u : 1u) << "a name only where the file system needs one";
+    file.finish();
+    ASSERT_EQ(folder.names().size(), 1u) << "the temporary file lies in the same folder";
+    EXPECT_EQ(folder.names()[0].substr(0, 10), ".gridiron.");
   }
   EXPECT_EQ(folder.names(), Names{});
 }
