@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,14 @@ std::vector<std::string> names_of(const FrameMaker& maker) {
   std::vector<std::string> names = {kTableName, kPassesName, kPlotName, kLogName};
   for (std::size_t i = 0; i < maker.count(); ++i) names.push_back(maker.picture_of(i));
   return names;
+}
+
+// Nothing but a file: a folder or a link of that name is somebody else's.
+void remove_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(std::filesystem::symlink_status(path, error))) {
+    std::filesystem::remove(path, error);
+  }
 }
 
 // The options that results depend on; a machine by its content.
@@ -165,13 +174,17 @@ void Animation::write_table(bool is_last) const {
   AtomicFiles table;
   const std::vector<NamedFrame> frames = named_frames();
   table.add(request_.output / kTableName, table_of(frames, *request_.render.scene.machine));
-  if (const std::string passes = passes_of(frames); !passes.empty()) table.add(request_.output / kPassesName, passes);
-  table.add(request_.output / kPlotName, plot_of(frames));
+  const std::string passes = passes_of(frames), plot = plot_of(frames);
+  if (!passes.empty()) table.add(request_.output / kPassesName, passes);
+  if (!plot.empty()) table.add(request_.output / kPlotName, plot);
   if (is_last) {
     table.commit_at_end();
   } else {
     table.commit();
   }
+  // Those of an earlier command would be of other frames than the table.
+  if (passes.empty()) remove_file(request_.output / kPassesName);
+  if (plot.empty()) remove_file(request_.output / kPlotName);
 }
 
 void Animation::write_film() const {

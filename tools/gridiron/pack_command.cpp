@@ -3,9 +3,14 @@
 #include <gridiron/sim/host_team.h>
 
 #include <cstdio>
+#include <optional>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "base/failure.h"
+#include "base/numbers.h"
 #include "base/progress.h"
 #include "base/words.h"
 #include "commands.h"
@@ -13,6 +18,7 @@
 #include "files/command_files.h"
 #include "gridiron/device/layout_choice.h"
 #include "gridiron/device/store_facts.h"
+#include "gridiron/frame/requested_frame.h"
 #include "gridiron/scene/image_structures.h"
 #include "gridiron/scene/scene_input.h"
 
@@ -39,11 +45,40 @@ SceneRequest completed(const PackRequest& request, const KnownScene& known) {
   return scene;
 }
 
+// Puts the scene into its look. @returns the view that the look is made for; nothing without a look.
+std::optional<ViewRequest> give_look(const PackRequest& request, PictureRequest picture, SceneInput& input) {
+  if (!request.scene.look.is_given()) return std::nullopt;
+  picture = complete_request(std::move(picture), input.text ? input.text->view : SceneView{});
+  ViewRequest view = join_view(picture.view, *picture.camera);
+  give_look(request.scene.look, input, static_cast<double>(picture.size->x) / picture.size->y, nullptr, view);
+  return view;
+}
+
+// "--eye 1,2,3 --at 0,0,0 --up 0,1,0 --fov 30"
+std::string options_of(const ViewRequest& view) {
+  const auto words = [](const Vec3& v) {
+    return shortest_text(v.x) + "," + shortest_text(v.y) + "," + shortest_text(v.z);
+  };
+  return "--eye " + words(*view.eye) + " --at " + words(*view.at) + " --up " + words(*view.up) + " --fov " +
+         shortest_text(view.fov_degrees.value_or(kDefaultFovDegrees));
+}
+
+// An image without effects holds triangles alone.
+void tell_surface(const std::filesystem::path& file, const MeshSurface& surface) {
+  std::vector<std::string> lost;
+  if (!surface.materials.empty()) lost.push_back(words_of_count(surface.materials.size(), "material"));
+  if (!surface.triangle_normals.empty()) lost.emplace_back("normals");
+  if (!surface.triangle_colors.empty()) lost.emplace_back("colours");
+  if (lost.empty()) return;
+  std::fprintf(stderr, "%s: not packed: %s; --look studio or a part of it packs them\n", file.c_str(),
+               words_of_list(lost).c_str());
+}
+
 // Of a frame of the usual layout in the machine's largest store.
 StoreFacts store_of(const sim::MachineProfile& machine, const Configuration& configuration, const SceneInput& input) {
   const sim::StoreSize store = largest_store(machine);
   return input.effects ? effect_store_facts(store, configuration.packet_width)
-                    : usual_store_facts(store, configuration.packet_width);
+                       : usual_store_facts(store, configuration.packet_width);
 }
 
 }  // namespace
@@ -52,15 +87,21 @@ void run_command(const PackRequest& request) {
   (void)completed(request, foreseen_scene(request.scene));
   declare_outputs({{"-o", request.output, OutputKind::kBinary}});
   const StageLines stages(!request.scene.quiet);
-  const SceneInput input = read_scene_input(request.scene.input, request.scene.tolerance, PictureRequest{},
-                                            kExpectedScene, request.scene.model);
+  PictureRequest picture{request.view, std::nullopt, std::nullopt};
+  if (request.camera) picture.camera = read_camera_file(*request.camera);
+  SceneInput input =
+      read_scene_input(request.scene.input, request.scene.tolerance, picture, kExpectedScene, request.scene.model);
   const Mesh* mesh = std::get_if<Mesh>(&input.content);
   if (mesh == nullptr) {
     input_error(input.path, std::string("is a scene image already; ") + kExpectedScene);
   }
 
+  const std::optional<ViewRequest> view = give_look(request, std::move(picture), input);
   const SceneRequest scene = completed(request, known_scene(input));
-  if (!scene.quiet) tell_notes(input);
+  if (!scene.quiet) {
+    tell_notes(input);
+    if (!input.effects) tell_surface(input.path, mesh->surface);
+  }
 
   // The budget for an ordinary picture, so that render chooses the same grid.
   const sim::MachineProfile& machine = *scene.machine;
@@ -99,6 +140,7 @@ void run_command(const PackRequest& request) {
                 static_cast<double>(built.grid.lambda));
   }
   std::printf("\nholds: %s\n", words_of_structures(structures_of(built)).c_str());
+  if (view) std::printf("seen as render shows its look: %s\n", options_of(*view).c_str());
 }
 
 }  // namespace gridiron::tool

@@ -364,6 +364,53 @@ TEST(Animate, OptionsChangeCostOrPicture) {
   EXPECT_EQ(row_of({"--threads", "1"}), row_of({"--threads", "3"}));
 }
 
+// A ground in the picture is not the mesh.
+TEST(Animate, AGroundIsNotTheMesh) {
+  const TemporaryFolder folder("a.ply", make_sphere(10, 14, 1.0f));
+  const Words common = {"render", "a.ply", "--look", "studio", "--size", "24x24",
+                        "--ao",   "0",     "--eye",  "0,6,0",  "--at"};
+  const std::string note = "note: no pixel shows the scene: it lies ";
+  for (const Words& more : {Words{}, Words{"--mode", "plain"}, Words{"--ids", "i.pfm"}}) {
+    EXPECT_NE(run_program(folder.folder(), common + Words{"20,0,1"} + more).err.find(note), std::string::npos);
+    EXPECT_EQ(run_program(folder.folder(), common + Words{"0,0,0.1"} + more).err.find(note), std::string::npos);
+  }
+}
+
+// The pictures of the simulated chip, and no figure that would be of another command.
+TEST(Animate, PlainModeHasPicturesAndNoTimes) {
+  const TemporaryFolder folder("a.ply", make_sphere(10, 14, 1.0f));
+  folder.write_ply("b.ply", make_torus(24, 16, 1.0f, 0.4f));
+  const Words times = {"builder",     "build_cycles",   "render_cycles", "total_cycles",
+                       "build_seconds", "render_seconds", "seconds",       "fps"};
+  for (const Words& frames : {Words{"a.ply", "b.ply"}, Words{"a.ply", "--turntable", "2"}}) {
+    const Words common = frames + Words{"-o", "out", "--size", "40x24"};
+    (void)animate(folder, common);
+    const std::vector<Row> checked = read_table(folder.path("out/animation.csv"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path("out/animation.svg")));
+    const ProgramResult result = animate(folder, common + Words{"--mode", "plain"});
+    EXPECT_NE(result.out.find("\n2 frames; --mode plain counts no cycles\n"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find(" hash " + checked.at(0).at("hash") + "\n"), std::string::npos) << result.out;
+    const std::vector<Row> plain = read_table(folder.path("out/animation.csv"));
+    ASSERT_EQ(plain.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(plain[i].at("hash"), checked[i].at("hash"));
+      EXPECT_EQ(plain[i].at("triangles"), checked[i].at("triangles"));
+      for (const std::string& name : times) EXPECT_EQ(plain[i].at(name), "") << name;
+    }
+    for (const char* const name : {"out/animation.svg", "out/animation_passes.csv"}) {
+      EXPECT_FALSE(std::filesystem::exists(folder.path(name))) << name << ": of the first command";
+    }
+    const std::string table = read_file(folder.path("out/animation.csv"));
+    (void)animate(folder, common + Words{"--mode", "plain", "--resume"});
+    EXPECT_EQ(read_file(folder.path("out/animation.csv")), table);
+    EXPECT_EQ(run_program(folder.folder(), Words{"animate"} + common + Words{"--resume"}).exit_code, 1)
+        << "frames without cycles are no part of a table with cycles";
+  }
+  const Words common = {"animate", "a.ply", "-o", "new", "--mode", "plain"};
+  expect_failure(folder, common + Words{"--build", "cores"}, 2, "--build: --mode plain counts no builds");
+  expect_failure(folder, common + Words{"--timeline", "t.json"}, 2, "--timeline: --mode plain does not record");
+}
+
 TEST(Animate, WhatCannotBeDoneIsTold) {
   const TemporaryFolder folder("a.ply", make_sphere(8, 12, 1.0f));
   std::filesystem::create_directory(folder.path("empty"));

@@ -94,6 +94,37 @@ TEST(Pack, ImagesHoldWhatTheirConfigurationReads) {
                  "--format projection: configuration best has no triangles for it");
 }
 
+// Lights and ground are made for a view, which pack prints: an image has none.
+TEST(Pack, KeepsALook) {
+  const TemporaryFolder folder("a.ply", make_torus(24, 16, 1.0f, 0.4f));
+  for (const Words& look : {Words{"--look", "studio", "--ao", "2"},
+                            Words{"--color", "red", "--up", "z", "--from", "left", "--fov", "50"}}) {
+    const ProgramResult packed = run(folder, Words{"pack", "a.ply", "-o", "a.gri"} + look);
+    const std::string opening = "\nseen as render shows its look: ";
+    const std::size_t place = packed.out.find(opening);
+    ASSERT_NE(place, std::string::npos) << packed.out;
+    std::istringstream line(packed.out.substr(place + opening.size()));
+    Words view;
+    for (std::string word; line >> word;) view.push_back(word);
+    const std::string hash = hash_of(run(folder, Words{"render", "a.ply", "--size", "32x32"} + look));
+    EXPECT_EQ(hash.size(), 21u);
+    EXPECT_EQ(hash_of(run(folder, Words{"render", "a.gri", "--size", "32x32"} + view)), hash);
+  }
+  expect_failure(folder, {"pack", "a.ply", "-o", "b.gri", "--fov", "50"}, 2, "place the lights of a look");
+}
+
+TEST(Pack, SaysWhatItDoesNotKeep) {
+  const TemporaryFolder folder("a.ply",
+                               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                               "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+                               "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                               "0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n3 0 1 2\n");
+  const std::string note = "a.ply: not packed: colours; --look studio or a part of it packs them\n";
+  EXPECT_NE(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri"}).err.find(note), std::string::npos);
+  EXPECT_EQ(run_program(folder.folder(), {"pack", "a.ply", "-o", "a.gri", "--ao", "1"}).err.find("not packed"),
+            std::string::npos);
+}
+
 TEST(Pack, IsTheSameBytesEveryTime) {
   const TemporaryFolder folder("a.ply", make_random_soup(300, 0.2f, 7));
   run(folder, {"pack", "a.ply", "-o", "a.gri"});

@@ -126,7 +126,7 @@ void CameraMove::build() {
     std::optional<VertexOrder> order;
     if (!animate_.keeps_vertex_order) memory_->vertex_order = &order;
     prepare_frame(*memory_, frame_.input, frame_.plan, views_[view]);
-    build_.cost = cost_of_build(frame_.input, *memory_, frame_.plan);
+    if (frame_.plan.mode != sim::Mode::kPlain) build_.cost = cost_of_build(frame_.input, *memory_, frame_.plan);
   }
 }
 

@@ -37,6 +37,11 @@ std::string word_of_builder(const std::optional<BuildCost>& build) {
   return build->builder == Builder::kCores ? "cores" : "master";
 }
 
+// All frames of one command are, or none.
+bool are_timed(const std::vector<NamedFrame>& frames) {
+  return std::ranges::all_of(frames, [](const NamedFrame& frame) { return frame.figures.is_timed; });
+}
+
 // What the sum of all frames says of builds.
 std::string words_of_builds(const std::vector<NamedFrame>& frames, const std::optional<SingleBuild>& single) {
   if (single && single->structure.empty()) return "; the camera alone moves, nothing is built";
@@ -182,6 +187,7 @@ std::string passes_of(const std::vector<NamedFrame>& frames) {
 
 std::string plot_of(const std::vector<NamedFrame>& frames) {
   constexpr std::size_t kMostBars = 24;
+  if (!are_timed(frames)) return "";
   const bool has_builds = std::ranges::any_of(
       frames, [](const NamedFrame& frame) { return frame.figures.build && frame.figures.build->cycles > 0; });
   const auto build_of = [](const NamedFrame& frame) {
@@ -228,12 +234,13 @@ std::string table_of(const std::vector<NamedFrame>& frames, const sim::MachinePr
     const auto of_build = [&figures](double BuildCost::*value) {
       return figures.build ? shortest_text(*figures.build.*value) : std::string();
     };
+    const auto if_timed = [&figures](double value) { return figures.is_timed ? shortest_text(value) : std::string(); };
     for (const std::string& field :
          {shortest_text(i), in_csv(frames[i].mesh), shortest_text(figures.triangles),
           figures.lambda ? shortest_text(*figures.lambda) : std::string(), word_of_builder(figures.build),
-          of_build(&BuildCost::cycles), shortest_text(figures.render_cycles), shortest_text(total_cycles),
-          of_build(&BuildCost::seconds), shortest_text(figures.render_seconds), shortest_text(figures.seconds()),
-          shortest_text(figures.fps())}) {
+          of_build(&BuildCost::cycles), if_timed(figures.render_cycles), if_timed(total_cycles),
+          of_build(&BuildCost::seconds), if_timed(figures.render_seconds), if_timed(figures.seconds()),
+          if_timed(figures.fps())}) {
       table += field + ",";
     }
     table += hash_text(figures.hash) + "\n";
@@ -243,6 +250,13 @@ std::string table_of(const std::vector<NamedFrame>& frames, const sim::MachinePr
 
 void print_frames(const std::vector<NamedFrame>& frames, const sim::MachineProfile& machine, std::uint32_t cores,
                   const std::optional<SingleBuild>& build) {
+  if (!are_timed(frames)) {
+    for (const NamedFrame& frame : frames) {
+      std::printf("%-24s hash %s\n", frame.picture.c_str(), hash_text(frame.figures.hash).c_str());
+    }
+    std::printf("%s; --mode plain counts no cycles\n", words_of_count(frames.size(), "frame").c_str());
+    return;
+  }
   std::printf("%-24s %14s %9s %14s %9s %9s\n", "frame", "build cycles", "ms", "render cycles", "ms", "frames/s");
   double seconds = 0;
   for (const NamedFrame& frame : frames) {

@@ -45,6 +45,7 @@ struct FrameFigures {
   std::uint64_t triangles = 0;
   std::optional<float> lambda;     ///< with a grid
   std::optional<BuildCost> build;  ///< nothing: not counted; 0 where nothing is built for the frame
+  bool is_timed = true;            ///< false: rendered without cycles; then nothing of the times is known
   double render_cycles = 0, render_seconds = 0;
   std::uint64_t hash = 0;  ///< of the picture
 
@@ -80,13 +81,13 @@ struct NamedFrame {
   FrameFigures figures;
 };
 
-/// @returns animation.csv. Fields of a build that is not counted are empty.
+/// @returns animation.csv. Fields of what is not counted are empty.
 [[nodiscard]] std::string table_of(const std::vector<NamedFrame>& frames, const sim::MachineProfile& machine);
 
 /// @returns animation_passes.csv: the passes of all frames that the cores build for; empty if there are none.
 [[nodiscard]] std::string passes_of(const std::vector<NamedFrame>& frames);
 
-/// @returns animation.svg: the milliseconds of each frame, of its build and of its picture.
+/// @returns animation.svg: the milliseconds of each frame, of its build and of its picture; empty if no frame is timed.
 [[nodiscard]] std::string plot_of(const std::vector<NamedFrame>& frames);
 
 /// Where the camera alone moves, the scene image is built once.

@@ -45,7 +45,9 @@ std::string line_of(std::size_t i, const LoggedFrame& frame) {
         shortest_text(figures.triangles), text_of(figures.lambda),
         text_of(figures.build ? std::optional(figures.build->cycles) : std::nullopt),
         text_of(figures.build ? std::optional(figures.build->seconds) : std::nullopt),
-        shortest_text(figures.render_cycles), shortest_text(figures.render_seconds), shortest_text(figures.hash)}) {
+        text_of(figures.is_timed ? std::optional(figures.render_cycles) : std::nullopt),
+        text_of(figures.is_timed ? std::optional(figures.render_seconds) : std::nullopt),
+        shortest_text(figures.hash)}) {
     line += " " + word;
   }
   if (!figures.build || figures.build->builder == Builder::kMaster) return line + "\n";
@@ -132,8 +134,11 @@ std::optional<std::pair<std::size_t, LoggedFrame>> frame_of(std::string_view tex
   const auto build_cycles = words.take_optional<double>();
   const auto build_seconds = words.take_optional<double>();
   if (build_cycles && build_seconds) figures.build = BuildCost{*build_cycles, *build_seconds, Builder::kMaster, {}};
-  figures.render_cycles = words.take<double>();
-  figures.render_seconds = words.take<double>();
+  const auto render_cycles = words.take_optional<double>();
+  const auto render_seconds = words.take_optional<double>();
+  figures.is_timed = render_cycles && render_seconds;
+  figures.render_cycles = render_cycles.value_or(0);
+  figures.render_seconds = render_seconds.value_or(0);
   figures.hash = words.take<std::uint64_t>();
   if (figures.build && words.has_more()) take_passes(words, *figures.build);
   return words.are_whole() ? std::optional(std::pair(i, frame)) : std::nullopt;

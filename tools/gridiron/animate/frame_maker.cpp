@@ -94,7 +94,7 @@ void check_foreseen(const AnimateRequest& request, const std::filesystem::path& 
 }
 
 void choose_builder(const AnimateRequest& request, RenderPlan& plan) {
-  if (request.builder == Builder::kMaster) return;
+  if (request.builder == Builder::kMaster || plan.mode == sim::Mode::kPlain) return;
   if (cores_can_build(plan)) {
     plan.builder = Builder::kCores;
   } else if (request.builder == Builder::kCores) {
@@ -123,20 +123,23 @@ MadeFrame render_frame(FrameMemory& memory, const RenderPlan& plan, std::uint64_
     progress(static_cast<double>(done) / total);
   };
   const sim::ChipResult result = render_on_chip(memory, plan, of_tiles);
-  const sim::FrameTiming timing =
-      sim::replay(result.trace, *plan.scene.machine, {.core_count = plan.cores, .timeline = has_timeline});
   MadeFrame made;
   made.source = {content, hash_of_view(memory.settings.camera, plan.width, plan.height)};
   made.figures.triangles = memory.image.header.triangle_count;
   if (memory.image.has_grid) made.figures.lambda = memory.image.grid.lambda;
-  made.figures.build = build;
-  if (build && build->builder == Builder::kCores) add_picture(timing, *plan.scene.machine, *made.figures.build);
-  made.figures.render_cycles = timing.frame_cycles;
-  made.figures.render_seconds = timing.seconds;
+  made.figures.is_timed = plan.mode != sim::Mode::kPlain;
+  if (made.figures.is_timed) {
+    const sim::FrameTiming timing =
+        sim::replay(result.trace, *plan.scene.machine, {.core_count = plan.cores, .timeline = has_timeline});
+    made.figures.build = build;
+    if (build && build->builder == Builder::kCores) add_picture(timing, *plan.scene.machine, *made.figures.build);
+    made.figures.render_cycles = timing.frame_cycles;
+    made.figures.render_seconds = timing.seconds;
+    if (has_timeline) made.timeline = timeline_of(memory.cores_build, plan, timing);
+  }
   const Picture<std::uint32_t> color = words_of_plane(memory.record, memory.color.bytes);
   made.figures.hash = image_hash(color.pixels);
   made.png = encode_png(color);
-  if (has_timeline) made.timeline = timeline_of(memory.cores_build, plan, timing);
   if (!plan.scene.quiet) made.note = unseen_note(memory, result, plan.mode);
   return made;
 }

@@ -72,7 +72,7 @@ class FrameMaker {
 /// Throws Failure (kUsage) if no frame of a scene of that kind can be rendered as requested, before it is read.
 void check_foreseen(const AnimateRequest& request, const std::filesystem::path& input);
 
-/// Says in a plan what builds the tree. Errors: Failure (kUsage) if that is not possible.
+/// Says in a plan what builds the tree; without cycles the host does. Errors: Failure (kUsage) if that is not possible.
 void choose_builder(const AnimateRequest& request, RenderPlan& plan);
 
 /// @returns the hash of a camera, and of the size of its picture.
@@ -81,8 +81,8 @@ void choose_builder(const AnimateRequest& request, RenderPlan& plan);
 /// @returns the camera of a view with eye and at.
 [[nodiscard]] Camera camera_of(const ViewRequest& view, std::uint32_t width, std::uint32_t height);
 
-/// Renders a prepared frame. @param build  for its figures; where the cores build for each frame, the begin and end of
-/// the picture's pass are added to it.
+/// Renders a prepared frame; in plain mode it has no figures of time. @param build  for its figures; where the cores
+/// build for each frame, the begin and end of the picture's pass are added to it.
 [[nodiscard]] MadeFrame render_frame(FrameMemory& memory, const RenderPlan& plan, std::uint64_t content,
                                      const std::optional<BuildCost>& build, bool has_timeline,
                                      const FrameProgress& progress);

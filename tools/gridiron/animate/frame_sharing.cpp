@@ -39,6 +39,7 @@ void add_figures(ByteWriter& writer, const FrameFigures& figures) {
     writer.add(figures.build->builder);
     add_passes(writer, figures.build->passes);
   }
+  writer.add(figures.is_timed);
   writer.add(figures.render_cycles);
   writer.add(figures.render_seconds);
   writer.add(figures.hash);
@@ -54,6 +55,7 @@ void take_figures(ByteReader& reader, FrameFigures& figures) {
     reader.take(build.builder);
     take_passes(reader, build.passes);
   }
+  reader.take(figures.is_timed);
   reader.take(figures.render_cycles);
   reader.take(figures.render_seconds);
   reader.take(figures.hash);

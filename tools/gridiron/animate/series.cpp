@@ -202,8 +202,9 @@ MadeFrame Series::make(std::size_t i, bool has_timeline, const FrameProgress& pr
   FrameMemory memory(frame_memory_bytes(requested.input, requested.plan));
   if (!animate_.keeps_vertex_order) memory.vertex_order = &vertex_order_;
   prepare_frame(memory, requested.input, requested.plan, requested.view);
-  return render_frame(memory, requested.plan, frame.content, cost_of_build(requested.input, memory, requested.plan),
-                      has_timeline, progress);
+  const std::optional<BuildCost> build =
+      requested.plan.mode == sim::Mode::kPlain ? std::nullopt : cost_of_build(requested.input, memory, requested.plan);
+  return render_frame(memory, requested.plan, frame.content, build, has_timeline, progress);
 }
 
 }  // namespace

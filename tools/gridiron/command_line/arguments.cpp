@@ -86,10 +86,19 @@ Finish add_pack(CLI::App& app) {
   add_grid_options(app, pack.scene, asked->machine);
   add_output(app, "-o,--output", pack.output, {"gri"}, "scene image; - is standard output")->required();
   add_choice(app, "--format", pack.format, kFormats, format_help());
+  add_look_options(app, pack.scene.look);
+  add_view_options(app, pack.camera, pack.view);
   add_quiet(app, pack.scene.quiet);
   return [asked] {
-    complete_scene(asked->request.scene, asked->machine);
-    return asked->request;
+    PackRequest& request = asked->request;
+    const ViewRequest& view = request.view;
+    const bool has_view = request.camera || view.eye || view.at || view.up || view.from || view.fov_degrees;
+    if (has_view && !request.scene.look.is_given()) {
+      usage_error("--camera, --eye, --at, --up, --from, --fov: place the lights of a look; a packed scene has no view");
+    }
+    if (view.from && view.eye) usage_error("--from and --eye: both say where the eye is");
+    complete_scene(request.scene, asked->machine, request.camera);
+    return request;
   };
 }
 

@@ -38,6 +38,8 @@ inline constexpr float kUsualFramesPerSecond = 24;
 
 struct PackRequest {
   SceneRequest scene;
+  std::optional<std::filesystem::path> camera;  ///< of a look, whose lights it places
+  ViewRequest view;                             ///< likewise
   TriangleFormat format = TriangleFormat::kVertices;
   std::filesystem::path output;
 };

@@ -142,6 +142,9 @@ void require_own_streams(const std::vector<NamedFile>& inputs);
 void complete_scene(SceneRequest& scene, const std::string& machine,
                     const std::optional<std::filesystem::path>& camera = std::nullopt);
 
+/// Adds the options of a view.
+void add_view_options(CLI::App& app, std::optional<std::filesystem::path>& camera, ViewRequest& view);
+
 /// Adds the options of a mesh's look.
 void add_look_options(CLI::App& app, LookRequest& look);
 

@@ -23,30 +23,6 @@ std::optional<std::uint64_t> parse_seed(const std::string& text) {
   return std::stoull(text);
 }
 
-void add_view_options(CLI::App& app, RenderRequest& render) {
-  const std::string vector = "x,y,z with three finite numbers";
-  add_input_option(app, "--camera", render.camera, {"camera"},
-                   "view from a file of its own; --eye, --at, --up and --fov replace parts of it; - is standard input");
-  add_parsed(app, "--eye", render.view.eye, parse_vector, vector, "x,y,z",
-             "position of the camera (default: a text scene's own, else the scene is framed)");
-  add_parsed(app, "--at", render.view.at, parse_vector, vector, "x,y,z",
-             "point in the middle of the picture (default: a text scene's own, else that of the framed scene)");
-  add_parsed(app, "--up", render.view.up, parse_up, "x, y, z, -x, -y, -z or " + vector, "AXIS|x,y,z",
-             "direction that is up (default y, or a text scene's own)", {"x", "y", "z", "-x", "-y", "-z"});
-  add_parsed(app, "--from", render.view.from, parse_view_angles,
-             "front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees, elevation from -90 to 90",
-             "SIDE|AZIMUTH,ELEVATION",
-             "side from which the scene is framed: front|back|left|right|top|bottom|iso, or degrees from the front to "
-             "the right and upwards (default 30,25); replaces eye and at of --camera or of a text scene",
-             {"front", "back", "left", "right", "top", "bottom", "iso"});
-  const auto fov = [](const std::string& text) {
-    const std::optional<float> value = parse_float(text);
-    return value && fov_is_possible(*value) ? value : std::nullopt;
-  };
-  add_parsed(app, "--fov", render.view.fov_degrees, fov, "an angle from 0.001 to below 180 degrees", "DEG",
-             "angle between the top and the bottom edge (default 45)");
-}
-
 void add_output_options(CLI::App& app, RenderRequest& render) {
   FrameOutputs& outputs = render.outputs;
   add_output(app, "-o,--output", outputs.picture, kPictureEndings,
@@ -73,14 +49,18 @@ void add_cores(CLI::App& app, std::optional<std::uint32_t>& cores) {
   add_count(app, "--cores", cores, 1, kMostCores, "cores of the machine (default: the profile's)");
 }
 
+void add_mode(CLI::App& app, Mode& mode) {
+  add_choice(app, "--mode", mode,
+             Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
+             "checked (default): every rule checked, work traced; plain: fast, nothing but the picture; "
+             "instrumented: checked, and every load and store of the kernel too");
+}
+
 void add_machine_options(CLI::App& app, RenderRequest& render) {
   add_cores(app, render.cores);
   add_threads(app, render.threads, "no result depends on it");
   add_store(app, render.layout.store);
-  add_choice(app, "--mode", render.mode,
-             Choices<Mode>{{"checked", Mode::kChecked}, {"plain", Mode::kPlain}, {"instrumented", Mode::kInstrumented}},
-             "checked (default): every rule checked, work traced; plain: fast, nothing but the picture; "
-             "instrumented: checked, and every load and store of the kernel too");
+  add_mode(app, render.mode);
   add_choice(
       app, "--completion", render.completion,
       Choices<Completion>{{"early", Completion::kEarly}, {"late", Completion::kLate}, {"random", Completion::kRandom}},
@@ -137,6 +117,12 @@ void complete_animation(AnimateRequest& animate, const std::string& machine) {
   }
   if (!animate.clip.empty() && !animate.animation) usage_error("--clip: is of --animation");
   if (animate.frames_per_second && !animate.film) usage_error("--fps: is of --film");
+  if (render.mode == Mode::kPlain && animate.builder) {
+    usage_error("--build: --mode plain counts no builds; --mode checked does");
+  }
+  if (animate.timeline && render.mode == Mode::kPlain) {
+    usage_error("--timeline: --mode plain does not record what cores do when; --mode checked does");
+  }
   if (animate.timeline && animate.resume) usage_error("--timeline: is not made again by --resume");
   std::vector<NamedFile> inputs = {{"--camera", render.camera}, {"--path", animate.path}, machine_file(machine)};
   for (std::filesystem::path& input : animate.inputs) {
@@ -166,6 +152,30 @@ std::map<std::string, std::string> given_options(const CLI::App& app) {
 
 }  // namespace
 
+void add_view_options(CLI::App& app, std::optional<std::filesystem::path>& camera, ViewRequest& view) {
+  const std::string vector = "x,y,z with three finite numbers";
+  add_input_option(app, "--camera", camera, {"camera"},
+                   "view from a file of its own; --eye, --at, --up and --fov replace parts of it; - is standard input");
+  add_parsed(app, "--eye", view.eye, parse_vector, vector, "x,y,z",
+             "position of the camera (default: a text scene's own, else the scene is framed)");
+  add_parsed(app, "--at", view.at, parse_vector, vector, "x,y,z",
+             "point in the middle of the picture (default: a text scene's own, else that of the framed scene)");
+  add_parsed(app, "--up", view.up, parse_up, "x, y, z, -x, -y, -z or " + vector, "AXIS|x,y,z",
+             "direction that is up (default y, or a text scene's own)", {"x", "y", "z", "-x", "-y", "-z"});
+  add_parsed(app, "--from", view.from, parse_view_angles,
+             "front, back, left, right, top, bottom, iso or AZIMUTH,ELEVATION in degrees, elevation from -90 to 90",
+             "SIDE|AZIMUTH,ELEVATION",
+             "side from which the scene is framed: front|back|left|right|top|bottom|iso, or degrees from the front to "
+             "the right and upwards (default 30,25); replaces eye and at of --camera or of a text scene",
+             {"front", "back", "left", "right", "top", "bottom", "iso"});
+  const auto fov = [](const std::string& text) {
+    const std::optional<float> value = parse_float(text);
+    return value && fov_is_possible(*value) ? value : std::nullopt;
+  };
+  add_parsed(app, "--fov", view.fov_degrees, fov, "an angle from 0.001 to below 180 degrees", "DEG",
+             "angle between the top and the bottom edge (default 45)");
+}
+
 Finish add_render(CLI::App& app) {
   const auto asked = std::make_shared<Asked<RenderRequest>>();
   RenderRequest& render = asked->request;
@@ -173,7 +183,7 @@ Finish add_render(CLI::App& app) {
   add_grid_options(app, render.scene, asked->machine);
   add_output_options(app, render);
   add_size(app, render.size, "picture in pixels (default: a text scene's own, else 1024x1024)");
-  add_view_options(app, render);
+  add_view_options(app, render.camera, render.view);
   add_look_options(app, render.scene.look);
   add_machine_options(app, render);
   add_algorithm_options(app, render);
@@ -232,11 +242,12 @@ Finish add_animate(CLI::App& app) {
   add_model_options(app, render.scene);
   add_grid_options(app, render.scene, asked->machine);
   add_size(app, render.size, "pictures in pixels (default: the text scenes' own, else 1024x1024)");
-  add_view_options(app, render);
+  add_view_options(app, render.camera, render.view);
   add_look_options(app, render.scene.look);
   add_cores(app, render.cores);
   add_threads(app, render.threads, "no result depends on it");
   add_store(app, render.layout.store);
+  add_mode(app, render.mode);
   add_algorithm_options(app, render);
   add_quiet(app, render.scene.quiet);
   return [asked, &app] {
@@ -263,7 +274,7 @@ Finish add_job(CLI::App& app) {
              "memory of the device from there on: a job that needs more is refused");
   add_grid_options(app, render.scene, asked->machine);
   add_size(app, render.size, "picture in pixels (default: a text scene's own, else 1024x1024)");
-  add_view_options(app, render);
+  add_view_options(app, render.camera, render.view);
   add_look_options(app, render.scene.look);
   app.add_flag("--depth", render.depth_plane, "distances too");
   app.add_flag("--ids", render.ids_plane, "triangle ids too");

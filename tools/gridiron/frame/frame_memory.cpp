@@ -58,6 +58,7 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
     return region.address;
   }
   const Stopwatch stopwatch;
+  frame.ground_begin = input.ground_begin;
   const Mesh& mesh = std::get<Mesh>(input.content);
   EffectsView view;
   const EffectsView* effects = nullptr;
@@ -108,7 +109,8 @@ void store_record(FrameMemory& frame) {
 
 PointSource points_of(FrameMemory& frame) {
   return [&frame](const PointVisitor& visitor) {
-    visit_points(frame.image, frame.memory.bytes_at(frame.image_address, frame.image.header.image_bytes), visitor);
+    visit_points(frame.image, frame.memory.bytes_at(frame.image_address, frame.image.header.image_bytes), visitor,
+                 frame.ground_begin);
   };
 }
 

@@ -33,14 +33,15 @@ struct FrameMemory {
   sim::MemoryRegion color, depth, ids;  ///< depth, ids: empty if not requested
   sim::MemoryRegion spill;              ///< for waiting rays of each host thread; no bytes without them
   std::uint64_t spill_bytes_per_core = 0;
-  float wanted_lambda = 0;      ///< the image's own is image.grid.lambda
-  HostSeconds build_seconds{};  ///< of building the image, 0 for a packed scene
+  std::uint32_t ground_begin = kNoTriangle;  ///< as SceneInput's
+  float wanted_lambda = 0;                   ///< the image's own is image.grid.lambda
+  HostSeconds build_seconds{};               ///< of building the image, 0 for a packed scene
 };
 
 /// @returns bytes of a frame's memory: the machine's, and memory for waiting rays of host threads beyond its cores.
 [[nodiscard]] std::uint64_t frame_memory_bytes(const SceneInput& input, const RenderPlan& plan);
 
-/// @returns the points of a frame's scene image, once prepare_frame() has placed it.
+/// @returns the points of a frame's scene image without a look's ground, once prepare_frame() has placed it.
 [[nodiscard]] PointSource points_of(FrameMemory& frame);
 
 /// Fills `frame` for a render; with Shading::kScene also memory for waiting rays of plan.threads cores.

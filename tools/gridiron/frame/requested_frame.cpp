@@ -38,25 +38,23 @@ void check_scene_view(const RenderRequest& request, const RequestedFrame& frame)
   check_hither(input, complete_view(frame.view, aspect, no_points), plan.width, plan.height);
 }
 
-// The mesh alone is framed, without its ground.
-void give_look(const RenderRequest& request, SceneInput& input, double aspect, const LookBounds* bounds,
-               ViewRequest& view) {
-  check_look(request.scene.look, known_scene(input).kind);
+}  // namespace
+
+void give_look(const LookRequest& look, SceneInput& input, double aspect, const LookBounds* bounds, ViewRequest& view) {
+  check_look(look, known_scene(input).kind);
   const PointSource points = [&input](const PointVisitor& visitor) {
     visit_points(std::get<Mesh>(input.content).view(), visitor);
   };
   require_renderable(input);
-  view = look_view(request.scene.look, view);
+  view = look_view(look, view);
   const Camera camera = complete_view(view, aspect, points);
   const Vec3 up = view.up.value_or(kUsualUp);
-  apply_look(input, request.scene.look, camera, bounds != nullptr ? *bounds : look_bounds_of(points, up));
+  apply_look(input, look, camera, bounds != nullptr ? *bounds : look_bounds_of(points, up));
   view.eye = camera.eye;
   view.at = camera.at;
   view.up = camera.up;
   view.from.reset();
 }
-
-}  // namespace
 
 void take_grid_without_bounds(const RenderRequest& request, RequestedFrame& frame, std::span<const ViewRequest> views) {
   if (request.scene.configuration != nullptr || frame.plan.engine != EngineId::kTree) return;
@@ -87,7 +85,8 @@ RequestedFrame complete_frame(const RenderRequest& request, SceneInput input, co
       complete_request({request.view, camera, request.size}, frame.input.text ? frame.input.text->view : SceneView{});
   frame.view = join_view(picture.view, *picture.camera);
   if (request.scene.look.is_given()) {
-    give_look(request, frame.input, static_cast<double>(picture.size->x) / picture.size->y, bounds, frame.view);
+    give_look(request.scene.look, frame.input, static_cast<double>(picture.size->x) / picture.size->y, bounds,
+              frame.view);
   }
   frame.plan = resolve(request, known_scene(frame.input), this_host());
   check_scene_view(request, frame);

@@ -35,6 +35,12 @@ struct RequestedFrame {
                                             const std::optional<ViewRequest>& camera,
                                             const LookBounds* bounds = nullptr);
 
+/// Gives the scene its look, seen with `view`; completes eye, at and up of the view. The mesh is framed without its
+/// ground.
+/// @param bounds  null: those of the scene. Errors: Failure (kUsage) if this kind of scene cannot have the look; others
+/// of apply_look().
+void give_look(const LookRequest& look, SceneInput& input, double aspect, const LookBounds* bounds, ViewRequest& view);
+
 /// Where `best` is the default but has no bounds in one of the views, the plan becomes that of `grid`, if the scene has
 /// one; a note says so unless quiet.
 void take_grid_without_bounds(const RenderRequest& request, RequestedFrame& frame, std::span<const ViewRequest> views);

@@ -18,6 +18,7 @@ struct FramePlaces {
   MainAddress image{}, record{}, color{}, depth{}, ids{}, spill{};
   std::uint64_t image_bytes = 0, plane_bytes = 0, spill_bytes = 0, spill_bytes_per_core = 0;
   bool has_depth = false, has_ids = false;
+  std::uint32_t ground_begin = kNoTriangle;
 };
 
 FramePlaces places_of(const FrameMemory& frame) {
@@ -34,6 +35,7 @@ FramePlaces places_of(const FrameMemory& frame) {
   places.plane_bytes = frame.color.bytes.size();
   places.spill_bytes = frame.spill.bytes.size();
   places.spill_bytes_per_core = frame.spill_bytes_per_core;
+  places.ground_begin = frame.ground_begin;
   places.has_depth = !frame.depth.bytes.empty();
   places.has_ids = !frame.ids.bytes.empty();
   return places;
@@ -48,6 +50,7 @@ void make_places(FrameMemory& frame, const FramePlaces& places) {
     throw Failure(ExitCode::kBadInput, "the main memory of a frame is too small on this host");
   }
   frame.image_address = places.image;
+  frame.ground_begin = places.ground_begin;
   frame.record_address = places.record;
   frame.color = region(places.color, places.plane_bytes);
   if (places.has_depth) frame.depth = region(places.depth, places.plane_bytes);

@@ -21,7 +21,13 @@ std::optional<bool> is_empty(const FrameRecord& frame, const SeenPlanes& planes)
     const Picture<std::uint32_t> words = words_of_plane(frame, plane);
     return std::ranges::all_of(words.pixels, [wanted](std::uint32_t word) { return word == wanted; });
   };
-  if (planes.has_hits) return !*planes.has_hits;
+  if (planes.has_hits == false) return true;
+  if (planes.ground_begin != kNoTriangle) {
+    if (planes.ids.empty()) return std::nullopt;
+    const Picture<std::uint32_t> ids = words_of_plane(frame, planes.ids);
+    return std::ranges::all_of(ids.pixels, [&planes](std::uint32_t id) { return id >= planes.ground_begin; });
+  }
+  if (planes.has_hits) return false;
   if (!planes.ids.empty()) return all_are(planes.ids, kNoTriangle);
   if (!planes.depth.empty()) return all_are(planes.depth, std::bit_cast<std::uint32_t>(kFloatMax));
   if (frame.shading != static_cast<std::uint32_t>(Shading::kScene)) return all_are(planes.color, frame.background_rgba);
@@ -74,14 +80,15 @@ Extremes extremes_of(const FrameRecord& frame, const PointSource& points) {
   return extremes;
 }
 
-const char* reason_of(const Extremes& extremes) {
+// @param may_be_tiny  whether points between the centres of pixels are a reason.
+const char* reason_of(const Extremes& extremes, bool may_be_tiny) {
   if (!extremes.some_before) return "it lies behind the camera";
   if (extremes.all_left) return "it lies to the left of the picture";
   if (extremes.all_right) return "it lies to the right of the picture";
   if (extremes.all_above) return "it lies above the picture";
   if (extremes.all_below) return "it lies below the picture";
   const bool is_tiny = extremes.most_x - extremes.least_x < 1 && extremes.most_y - extremes.least_y < 1;
-  if (!extremes.some_behind && is_tiny) return "it is smaller than a pixel";
+  if (may_be_tiny && !extremes.some_behind && is_tiny) return "it is smaller than a pixel";
   return nullptr;
 }
 
@@ -90,7 +97,8 @@ const char* reason_of(const Extremes& extremes) {
 std::optional<std::string> unseen_note(const FrameRecord& frame, const SeenPlanes& planes, const PointSource& points) {
   const std::optional<bool> is_missed = is_empty(frame, planes);
   if (is_missed == false) return std::nullopt;
-  const char* reason = reason_of(extremes_of(frame, points));
+  const bool may_be_tiny = is_missed || planes.ground_begin == kNoTriangle;
+  const char* reason = reason_of(extremes_of(frame, points), may_be_tiny);
   if (reason == nullptr) {
     if (!is_missed) return std::nullopt;
     reason = "all rays miss its triangles";
@@ -100,6 +108,7 @@ std::optional<std::string> unseen_note(const FrameRecord& frame, const SeenPlane
 
 std::optional<std::string> unseen_note(FrameMemory& frame, const sim::ChipResult& result, sim::Mode mode) {
   SeenPlanes planes{frame.color.bytes, frame.depth.bytes, frame.ids.bytes};
+  planes.ground_begin = frame.ground_begin;
   planes.has_environment = frame.image.effects.environment_width != 0;
   if (frame.settings.shading == Shading::kScene && mode != sim::Mode::kPlain) {
     planes.has_hits = result.work[static_cast<std::size_t>(Work::kSurfacePoint)] != 0;

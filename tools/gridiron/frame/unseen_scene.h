@@ -21,11 +21,13 @@ struct SeenPlanes {
   std::span<const std::byte> color, depth, ids;  ///< output planes; depth, ids: may be empty
   bool has_environment = false;                  ///< pixels that hit nothing differ from one another
   std::optional<bool> has_hits{};                ///< where the work of the frame was counted
+  std::uint32_t ground_begin = kNoTriangle;      ///< triangles from here on are a look's ground, not the scene's own
 };
 
 /// @returns the note that no pixel of a frame shows the scene, with a reason if one applies to all of its points;
-/// nothing if a pixel shows it, or may.
-/// @param points  of the scene; used only if no pixel seems to show it.
+/// nothing if a pixel shows it, or may. A look's ground is not the scene: where nothing but hits of both is known, all
+/// points have to lie outside of the picture.
+/// @param points  of the scene without that ground; used only if no pixel seems to show it.
 [[nodiscard]] std::optional<std::string> unseen_note(const FrameRecord& frame, const SeenPlanes& planes,
                                                      const PointSource& points);
 

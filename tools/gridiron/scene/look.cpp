@@ -357,7 +357,8 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
   // Soft shadows and normals need places that are finer than the mesh's parts.
   if (glm::length(directions.middle) > kFarRadii * directions.radius) {
     input.look_notes.emplace_back(
-        "it lies so far from the origin that floats round its places: shadows and normals may show facets");
+        "it lies so far from the origin that floats round its places: shadows and normals may show facets; "
+        "where it was made, move it to the origin");
   }
   if (request.ground.value_or(is_studio)) {
     if (glm::dot(DVec3(view.eye), directions.up) < bounds.lowest) {
@@ -365,6 +366,7 @@ void apply_look(SceneInput& input, const LookRequest& request, const Camera& vie
     }
     if (effects.materials.size() >= kMostSceneMaterials)
       input_error(input.path, "has too many materials for a ground; --ground off renders it");
+    input.ground_begin = static_cast<std::uint32_t>(mesh.triangles.size());
     add_ground(mesh, directions, bounds, {.color = kGroundColor}, effects);
   }
   if (lights.head || has_fill) effects.lights.push_back(light_at(DVec3(view.eye), has_fill ? kFillColor : kHeadColor));

@@ -3,6 +3,7 @@
 // Memory: owns mesh or file. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gridiron/base/records.h>
 #include <gridiron/build/grid/grid_builder.h>
 #include <gridiron/build/work_sharing.h>
 #include <gridiron/image/scene_image.h>
@@ -45,12 +46,13 @@ struct TextScene {
 struct SceneInput {
   std::filesystem::path path;
   std::variant<Mesh, PackedScene> content;
-  HostSeconds load_seconds{};             ///< of reading and checking
-  std::optional<SceneEffects> effects{};  ///< beside a Mesh: of a text scene, or of a look
-  std::optional<TextScene> text{};        ///< beside a Mesh and its effects
-  std::optional<ImportReport> model{};    ///< of a Mesh of no text scene
-  std::uint64_t colorless_triangles = 0;  ///< whose colours a look has no material for
-  std::vector<std::string> look_notes{};  ///< why a look may disappoint
+  HostSeconds load_seconds{};                ///< of reading and checking
+  std::optional<SceneEffects> effects{};     ///< beside a Mesh: of a text scene, or of a look
+  std::optional<TextScene> text{};           ///< beside a Mesh and its effects
+  std::optional<ImportReport> model{};       ///< of a Mesh of no text scene
+  std::uint64_t colorless_triangles = 0;     ///< whose colours a look has no material for
+  std::vector<std::string> look_notes{};     ///< why a look may disappoint
+  std::uint32_t ground_begin = kNoTriangle;  ///< triangles from here on are of a look's ground
 };
 
 inline constexpr const char* kSceneExpected =

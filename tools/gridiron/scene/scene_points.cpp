@@ -98,7 +98,8 @@ void visit_points(const MeshView& mesh, const PointVisitor& visitor) {
   groups.hand_on();
 }
 
-void visit_points(const SceneImageView& view, std::span<const std::byte> image, const PointVisitor& visitor) {
+void visit_points(const SceneImageView& view, std::span<const std::byte> image, const PointVisitor& visitor,
+                  std::uint32_t end) {
   const GridRecord& grid = view.grid;  // without one the tree's bounds, format and lattice
   const auto format = static_cast<TriangleFormat>(grid.triangle_format);
   const std::uint64_t records_offset = view.has_grid ? view.triangles_offset_bytes : view.tree.triangles_offset_bytes;
@@ -109,6 +110,7 @@ void visit_points(const SceneImageView& view, std::span<const std::byte> image, 
   const auto visit = [&](std::uint64_t record) {
     const std::uint64_t offset = records_offset + record * grid.triangle_bytes;
     const auto id = read_record<std::uint32_t>(image, offset + grid.triangle_bytes - sizeof(std::uint32_t));
+    if (id >= end) return;
     if (id < is_known.size()) {
       if (is_known[id]) return;
       is_known[id] = true;
@@ -131,8 +133,8 @@ void visit_points(const SceneImageView& view, std::span<const std::byte> image, 
   constexpr std::uint64_t kRun = 32, kRuns = 64;
   for (std::uint64_t first = 0; first < kRuns; ++first) {
     for (std::uint64_t run = first * kRun; run < record_count; run += kRun * kRuns) {
-      const std::uint64_t end = std::min(run + kRun, record_count);
-      for (std::uint64_t record = run; record < end; ++record) visit(record);
+      const std::uint64_t run_end = std::min(run + kRun, record_count);
+      for (std::uint64_t record = run; record < run_end; ++record) visit(record);
     }
   }
   groups.hand_on();
