@@ -5,7 +5,7 @@ namespace gridiron::tool {
 namespace {
 
 constexpr const char* kOpening =
-    R"(# Completion of gridiron for bash, written by tools/manual from the options of the program.
+    R"( for bash, written by tools/manual from the options of the program.
 # SPDX-License-Identifier: Apache-2.0
 
 )";
@@ -101,8 +101,7 @@ _gridiron() {
   fi
 }
 
-complete -F _gridiron gridiron
-)BASH";
+complete -F _gridiron )BASH";
 
 std::string quoted(const std::string& text) {
   return "'" + text + "'";  // no name and no choice has a quote
@@ -133,10 +132,10 @@ std::string names_row(const CommandFacts& command) {
 
 }  // namespace
 
-std::string bash_completion(const ProgramFacts& facts) {
+std::string bash_completion(const ProgramFacts& facts, const std::string& program) {
   std::vector<std::string> commands;
   for (const CommandFacts& command : facts.commands) commands.push_back(command.name);
-  std::string script = kOpening;
+  std::string script = "# Completion of " + program + kOpening;
   script += "_gridiron_commands=" + quoted(joined(commands, " ")) +
             "\n\n# Prints the options of a command; of '': of the program.\n";
   script += "_gridiron_options() {\n  case $1 in\n" + names_row(facts.program);
@@ -155,7 +154,7 @@ std::string bash_completion(const ProgramFacts& facts) {
       if (option.takes_value) script += value_row(command, option, "");
     }
   }
-  return script + "    *) return 1 ;;\n  esac\n}\n" + kBody;
+  return script + "    *) return 1 ;;\n  esac\n}\n" + kBody + program + "\n";
 }
 
 }  // namespace gridiron::tool

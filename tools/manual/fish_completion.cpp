@@ -5,7 +5,7 @@ namespace gridiron::tool {
 namespace {
 
 constexpr const char* kOpening =
-    R"FISH(# Completion of gridiron for fish, written by tools/manual from the options of the program.
+    R"FISH( for fish, written by tools/manual from the options of the program.
 # SPDX-License-Identifier: Apache-2.0
 
 # Whether the command of the line is this one; without one: whether there is none yet.
@@ -30,7 +30,6 @@ function __gridiron_files
     end
 end
 
-complete -c gridiron -f
 )FISH";
 
 // Within single quotes fish knows \' and \\ alone.
@@ -61,8 +60,8 @@ std::string condition_of(const CommandFacts& command) {
   return command.name.empty() ? "__gridiron_command_is" : quoted("__gridiron_command_is " + command.name);
 }
 
-std::string rows_of(const CommandFacts& command) {
-  const std::string start = "complete -c gridiron -n " + condition_of(command);
+std::string rows_of(const CommandFacts& command, const std::string& program) {
+  const std::string start = "complete -c " + program + " -n " + condition_of(command);
   std::string rows;
   for (const OptionFacts& argument : command.arguments) {
     rows += start + values_of(argument.offer) + " -d " + quoted(short_help(argument)) + "\n";
@@ -80,12 +79,13 @@ std::string rows_of(const CommandFacts& command) {
 
 }  // namespace
 
-std::string fish_completion(const ProgramFacts& facts) {
-  std::string script = kOpening + rows_of(facts.program);
+std::string fish_completion(const ProgramFacts& facts, const std::string& program) {
+  const std::string start = "complete -c " + program;
+  std::string script = "# Completion of " + program + kOpening + start + " -f\n" + rows_of(facts.program, program);
   for (const CommandFacts& command : facts.commands) {
-    script += "complete -c gridiron -n __gridiron_command_is -a " + command.name + " -d " + quoted(command.help) + "\n";
+    script += start + " -n __gridiron_command_is -a " + command.name + " -d " + quoted(command.help) + "\n";
   }
-  for (const CommandFacts& command : facts.commands) script += rows_of(command);
+  for (const CommandFacts& command : facts.commands) script += rows_of(command, program);
   return script;
 }
 

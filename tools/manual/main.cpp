@@ -1,5 +1,5 @@
-// gridiron_manual: writes the man pages and the shells' completions of the program gridiron, which are then installed.
-// It reads the program's own tables of commands and options. SPDX-License-Identifier: Apache-2.0
+// gridiron_manual: writes the man pages and the shells' completions of the programs gridiron and gridiron_mpi, which
+// are then installed. It reads the program's own tables of commands and options. SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -21,15 +21,21 @@ void write(const std::filesystem::path& path, const std::string& text) {
   if (!file) input_error(path, "cannot be written");
 }
 
+void write_completions(const std::filesystem::path& folder, const ProgramFacts& facts, const std::string& program) {
+  write(folder / "bash" / program, bash_completion(facts, program));
+  write(folder / "zsh" / ("_" + program), zsh_completion(facts, program));
+  write(folder / "fish" / (program + ".fish"), fish_completion(facts, program));
+}
+
 void write_all(const std::filesystem::path& folder) {
   const ProgramFacts facts = program_facts();
   write(folder / "man1" / "gridiron.1", program_page(facts));
   for (const CommandFacts& command : facts.commands) {
     if (command.name != "help") write(folder / "man1" / (page_name(command) + ".1"), command_page(facts, command));
   }
-  write(folder / "bash" / "gridiron", bash_completion(facts));
-  write(folder / "zsh" / "_gridiron", zsh_completion(facts));
-  write(folder / "fish" / "gridiron.fish", fish_completion(facts));
+  write_completions(folder, facts, "gridiron");
+  write(folder / "mpi" / "man1" / "gridiron_mpi.1", mpi_page(facts));
+  write_completions(folder / "mpi", facts, "gridiron_mpi");
 }
 
 }  // namespace

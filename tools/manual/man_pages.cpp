@@ -139,10 +139,11 @@ std::string reference(const std::string& page) {
 }
 
 // Where packages install the documents.
-std::string documents() {
-  return section("FILES") + entry(italic("PREFIX/share/doc/gridiron/README.md"),
-                                  "What Gridiron is, and where to read on. tools/README.md beside it explains all "
-                                  "commands, files and figures of this program.");
+std::string documents(const std::string& page = "tools/README.md") {
+  return section("FILES") +
+         entry(italic("PREFIX/share/doc/gridiron/README.md"), "What Gridiron is, and where to read on. " + page +
+                                                                  " beside it explains all commands, files and "
+                                                                  "figures of this program.");
 }
 
 }  // namespace
@@ -175,6 +176,37 @@ std::string program_page(const ProgramFacts& facts) {
     references += (references.empty() ? "" : ",\n") + reference(page_name(command));
   }
   return page + references + "\n";
+}
+
+std::string mpi_page(const ProgramFacts& facts) {
+  std::string page = heading(facts, "gridiron_mpi", "one command of gridiron by many processes");
+  page += section("SYNOPSIS") + bold("mpirun -n") + " " + italic("N") + " " + bold("gridiron_mpi") + " " +
+          italic("COMMAND") + " [" + italic("OPTION") + " ...] [" + italic("ARGUMENT") + " ...]\n";
+  page += section("DESCRIPTION") +
+          roff(
+              "It takes the commands, options and arguments of gridiron and writes the same files. The processes of an "
+              "MPI, the ranks, share the work of render, animate and experiment. Rank 0 runs every other command "
+              "alone.") +
+          "\n";
+  page += section("DIFFERENCES");
+  const std::pair<const char*, const char*> differences[] = {
+      {"Inputs",
+       "Files that several ranks read, such as those of --machine and the frames of animate, must lie where all "
+       "nodes see them."},
+      {"Outputs", "Rank 0 alone writes and prints. No output can be -, since mpirun passes on text."},
+      {"Times",
+       "The times of the host in reports, and the files host_* of an experiment, differ from those of "
+       "gridiron."},
+      {"--threads", "The threads of each rank. Without it, ranks with the same processors divide them."},
+      {"Progress", "A line every 10 seconds."},
+  };
+  for (const auto& [term, meaning] : differences) page += entry(bold(term), meaning);
+  page += section("EXIT STATUS") +
+          roff("That of gridiron, whichever rank failed. Where a signal ended a rank: that of mpirun.") + "\n";
+  page += section("EXAMPLES") + entry(bold("mpirun -n 4 gridiron_mpi animate bunny.ply -o turn --turntable 48"),
+                                      "48 pictures, 12 of each rank.");
+  return page + documents("tools/mpi/README.md") + section("SEE ALSO") + reference("gridiron") + ",\n" +
+         reference("mpirun") + "\n";
 }
 
 std::string command_page(const ProgramFacts& facts, const CommandFacts& command) {

@@ -1,4 +1,4 @@
-// Man pages: the program and each of its commands as roff with the macros of man(7).
+// Man pages: the program, each of its commands, and gridiron_mpi, as roff with the macros of man(7).
 // Memory: std::string. Threads: one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -10,6 +10,9 @@ namespace gridiron::tool {
 
 /// @returns the page of the program: its commands, exit codes and examples.
 [[nodiscard]] std::string program_page(const ProgramFacts& facts);
+
+/// @returns the page of gridiron_mpi: how it is started and what differs from gridiron.
+[[nodiscard]] std::string mpi_page(const ProgramFacts& facts);
 
 /// @returns the page of a command: every argument and option.
 [[nodiscard]] std::string command_page(const ProgramFacts& facts, const CommandFacts& command);

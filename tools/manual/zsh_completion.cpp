@@ -4,8 +4,7 @@
 namespace gridiron::tool {
 namespace {
 
-constexpr const char* kOpening = R"ZSH(#compdef gridiron
-# Completion of gridiron for zsh, written by tools/manual from the options of the program.
+constexpr const char* kOpening = R"ZSH( for zsh, written by tools/manual from the options of the program.
 # SPDX-License-Identifier: Apache-2.0
 
 # Offers words, and files whose names end in one of the endings; '/': folders.
@@ -77,8 +76,9 @@ std::string command_row(const CommandFacts& command) {
 
 }  // namespace
 
-std::string zsh_completion(const ProgramFacts& facts) {
-  std::string script = std::string(kOpening) + "_gridiron() {\n  local curcontext=$curcontext state line ret=1\n" +
+std::string zsh_completion(const ProgramFacts& facts, const std::string& program) {
+  std::string script = "#compdef " + program + "\n# Completion of " + program + kOpening +
+                       "_gridiron() {\n  local curcontext=$curcontext state line ret=1\n" +
                        "  typeset -A opt_args\n  local -a commands=(\n";
   for (const CommandFacts& command : facts.commands) {
     script += "    '" + command.name + ":" + escaped(command.help) + "'\n";

@@ -93,8 +93,10 @@ std::string bash_line(const std::string& line) {
 TEST(Manual, EveryPageIsFormattedWithoutAWarning) {
   if (!has_program("man") || !has_program("groff")) GTEST_SKIP() << "man and groff are not installed";
   std::size_t count = 0;
-  for (const auto& entry : fs::directory_iterator(kPages / "man1")) {
-    const std::string page = "'" + entry.path().string() + "'";
+  std::vector<fs::path> pages = {kPages / "mpi" / "man1" / "gridiron_mpi.1"};
+  for (const auto& entry : fs::directory_iterator(kPages / "man1")) pages.push_back(entry.path());
+  for (const fs::path& path : pages) {
+    const std::string page = "'" + path.string() + "'";
     for (const std::string command :
          {"groff -ww -mandoc -Tutf8 ", "groff -ww -mandoc -Tutf8 -rLL=60n ", "MANWIDTH=80 man --warnings -Tutf8 -l "}) {
       const ScriptResult result = run_script("(LC_ALL=C.UTF-8 " + command + page + " > /dev/null)");
@@ -106,7 +108,7 @@ TEST(Manual, EveryPageIsFormattedWithoutAWarning) {
     }
     ++count;
   }
-  EXPECT_EQ(count, kCommands.size() + 1);
+  EXPECT_EQ(count, kCommands.size() + 2);
 }
 
 TEST(Manual, PagesHaveTheOptionsOfTheHelp) {
@@ -236,6 +238,25 @@ TEST(Manual, BashCompletesLines) {
 TEST(Manual, BashStartsTheCompletionOfTheProgram) {
   EXPECT_EQ(bash_line("complete -p gridiron"), "complete -F _gridiron gridiron\n");
   EXPECT_EQ(bash_line("set -u; COMP_WORDS=(gridiron pa); COMP_CWORD=1; _gridiron; echo ${COMPREPLY[*]}"), "pack\n");
+}
+
+// The program for MPI has the same completions under its own name, and both may be loaded.
+TEST(Manual, TheProgramForMpiIsCompletedAsTheOther) {
+  const fs::path mpi = kPages / "mpi";
+  for (const auto& [own, other] : {std::pair("bash/gridiron_mpi", "bash/gridiron"),
+                                   std::pair("zsh/_gridiron_mpi", "zsh/_gridiron"),
+                                   std::pair("fish/gridiron_mpi.fish", "fish/gridiron.fish")}) {
+    const std::regex name("(Completion of |#compdef |complete -c |complete -F _gridiron )gridiron_mpi\\b");
+    const std::string text = text_of(mpi / own);
+    EXPECT_TRUE(std::regex_search(text, name)) << own;
+    EXPECT_EQ(std::regex_replace(text, name, "$1gridiron"), text_of(kPages / other)) << own;
+  }
+  const std::string both = ". " + (mpi / "bash" / "gridiron_mpi").string() + "; ";
+  EXPECT_EQ(bash_line(both + "complete -p gridiron_mpi"), "complete -F _gridiron gridiron_mpi\n");
+  EXPECT_EQ(bash_line(both + "COMP_WORDS=(gridiron_mpi pa); COMP_CWORD=1; _gridiron; echo ${COMPREPLY[*]}"), "pack\n");
+  EXPECT_EQ(text_of(mpi / "zsh" / "_gridiron_mpi").find("#compdef gridiron_mpi\n"), 0u);
+  EXPECT_NE(text_of(mpi / "fish" / "gridiron_mpi.fish").find("\ncomplete -c gridiron_mpi -f\n"), std::string::npos);
+  EXPECT_NE(text_of(mpi / "man1" / "gridiron_mpi.1").find("gridiron (1)"), std::string::npos);
 }
 
 TEST(Manual, ZshReadsItsFunctionAndItsPatterns) {
