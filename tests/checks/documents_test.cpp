@@ -97,5 +97,33 @@ TEST(Documents, UninstallRemovesWhatWasInstalled) {
   EXPECT_FALSE(fs::exists(root / "build/install_manifest.txt"));
 }
 
+// Each manifest's files lie below the DESTDIR of its own install; that of the environment is taken before it.
+TEST(Documents, UninstallKnowsWhereFilesWereStaged) {
+  const ScratchDirectory scratch;
+  const std::string root = scratch.path().string();
+  for (const char* name : {"all/usr/bin/a", "tools/usr/bin/b", "asked/usr/bin/a", "asked/usr/bin/b"}) {
+    scratch.write(name, "");
+  }
+  const auto install = [&scratch, &root] {
+    scratch.write("build/install_manifest.txt", "/usr/bin/a\n");
+    scratch.write("build/install_destdir.txt", root + "/all");
+    scratch.write("build/install_manifest_tools.txt", "/usr/bin/b\n");
+    scratch.write("build/install_destdir_tools.txt", root + "/tools");
+  };
+  const std::string uninstall =
+      "cmake -D BUILD='" + root + "/build' -P " + source_path("tools/cmake/uninstall.cmake");
+  install();
+  const ScriptResult asked = run_script("DESTDIR='" + root + "/asked' " + uninstall);
+  EXPECT_NE(asked.output.find("2 files removed"), std::string::npos) << asked.output;
+  EXPECT_TRUE(fs::exists(scratch.path() / "all/usr/bin/a"));
+  EXPECT_FALSE(fs::exists(scratch.path() / "asked/usr/bin/a"));
+  install();
+  const ScriptResult known = run_script("env -u DESTDIR " + uninstall);
+  EXPECT_NE(known.output.find("2 files removed"), std::string::npos) << known.output;
+  EXPECT_FALSE(fs::exists(scratch.path() / "all/usr/bin/a"));
+  EXPECT_FALSE(fs::exists(scratch.path() / "tools/usr/bin/b"));
+  EXPECT_TRUE(fs::is_empty(scratch.path() / "build"));
+}
+
 }  // namespace
 }  // namespace gridiron::test

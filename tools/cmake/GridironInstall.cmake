@@ -1,6 +1,6 @@
 # What `cmake --install` installs, and what find_package and pkg-config find there. A component is a library with a
-# public name: platform, core, sim_platform; each is an install component too, as are tools and documents. The libraries
-# are static.
+# public name: platform, core, sim_platform; each is an install component too, as are tools, mpi and documents. The
+# libraries are static.
 # SPDX-License-Identifier: Apache-2.0
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -29,9 +29,22 @@ function(gridiron_install_component name)
   install(EXPORT gridiron_${name} NAMESPACE gridiron:: FILE gridiron-${name}.cmake
     DESTINATION ${GRIDIRON_CMAKE_DIR} COMPONENT ${name})
 
-  # The relative path from the file to the prefix, so that a prefix can be moved.
-  file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_PREFIX}/${GRIDIRON_PKGCONFIG_DIR} ${CMAKE_INSTALL_PREFIX})
-  string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")
+  # The relative path from the file to the prefix, so that a prefix can be moved. Absolute folders, which some packagers
+  # set, stay where they are.
+  if(IS_ABSOLUTE ${GRIDIRON_PKGCONFIG_DIR})
+    set(prefix ${CMAKE_INSTALL_PREFIX})
+  else()
+    file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_PREFIX}/${GRIDIRON_PKGCONFIG_DIR} ${CMAKE_INSTALL_PREFIX})
+    string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")
+    set(prefix "\${pcfiledir}/${to_prefix}")
+  endif()
+  foreach(kind INCLUDEDIR LIBDIR DATADIR)
+    string(TOLOWER ${kind} folder)
+    set(${folder} ${CMAKE_INSTALL_${kind}})
+    if(NOT IS_ABSOLUTE "${${folder}}")
+      string(PREPEND ${folder} "\${prefix}/")
+    endif()
+  endforeach()
   configure_file(${GRIDIRON_PACKAGE_FILES}/gridiron-${name}.pc.in ${PROJECT_BINARY_DIR}/gridiron-${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/gridiron-${name}.pc DESTINATION ${GRIDIRON_PKGCONFIG_DIR} COMPONENT ${name})
 endfunction()
@@ -79,6 +92,13 @@ function(gridiron_install_package)
   install(DIRECTORY ${documents}/pages/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documents)
 
   if(PROJECT_IS_TOP_LEVEL)
+    # A manifest has no DESTDIR: it is kept beside the manifest, for uninstall.
+    install(CODE "
+      set(of_component \"\")
+      if(CMAKE_INSTALL_COMPONENT)
+        set(of_component \"_\${CMAKE_INSTALL_COMPONENT}\")
+      endif()
+      file(WRITE \"${PROJECT_BINARY_DIR}/install_destdir\${of_component}.txt\" \"\$ENV{DESTDIR}\")" ALL_COMPONENTS)
     add_custom_target(uninstall COMMAND ${CMAKE_COMMAND} -D BUILD=${PROJECT_BINARY_DIR}
       -P ${PROJECT_SOURCE_DIR}/tools/cmake/uninstall.cmake COMMENT "Removing what was installed last" VERBATIM)
   endif()

@@ -1,6 +1,7 @@
 # Removes the files that the last `cmake --install` of each component, or of all of them, has written, and folders of Gridiron
 # that are empty then. The manifests in the build tree name them. Files that are gone already are no error.
-#   cmake -D BUILD=DIR -P tools/cmake/uninstall.cmake      DIR: the build tree; DESTDIR of the environment, as for the install
+#   cmake -D BUILD=DIR -P tools/cmake/uninstall.cmake      DIR: the build tree
+# Files lie below the DESTDIR of their install, or below that of the environment if there is one.
 # SPDX-License-Identifier: Apache-2.0
 file(GLOB manifests ${BUILD}/install_manifest*.txt)
 if(NOT manifests)
@@ -9,9 +10,14 @@ endif()
 set(count 0)
 set(folders "")
 foreach(manifest ${manifests})
+  string(REPLACE "/install_manifest" "/install_destdir" destdir_file "${manifest}")
+  set(destdir "$ENV{DESTDIR}")
+  if("${destdir}" STREQUAL "" AND EXISTS "${destdir_file}")
+    file(READ "${destdir_file}" destdir)
+  endif()
   file(STRINGS ${manifest} files)
   foreach(file ${files})
-    set(path "$ENV{DESTDIR}${file}")
+    set(path "${destdir}${file}")
     if(EXISTS "${path}" OR IS_SYMLINK "${path}")
       file(REMOVE "${path}")
       math(EXPR count "${count} + 1")
@@ -23,7 +29,7 @@ foreach(manifest ${manifests})
       get_filename_component(folder "${folder}" DIRECTORY)
     endwhile()
   endforeach()
-  file(REMOVE "${manifest}")
+  file(REMOVE "${manifest}" "${destdir_file}")
 endforeach()
 list(REMOVE_DUPLICATES folders)
 list(SORT folders ORDER DESCENDING)  # a folder comes before the one that it lies in
