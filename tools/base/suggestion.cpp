@@ -40,6 +40,12 @@ std::size_t rank_of(std::string_view word, std::string_view candidate) {
 
 }  // namespace
 
+std::optional<std::string> word_in_capitals(std::string_view word, std::span<const std::string> known) {
+  const auto found = std::ranges::find_if(
+      known, [&](const std::string& each) { return each.size() == word.size() && lower(each) == lower(word); });
+  return found == known.end() ? std::nullopt : std::optional(*found);
+}
+
 std::size_t word_distance(std::string_view first, std::string_view second) {
   const std::string a = lower(first), b = lower(second);
   std::vector<std::size_t> before(b.size() + 1), row(b.size() + 1), next(b.size() + 1);

@@ -3,12 +3,16 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace gridiron::tool {
+
+/// @returns the known word that differs from `word` in capitals alone; nothing if there is none.
+[[nodiscard]] std::optional<std::string> word_in_capitals(std::string_view word, std::span<const std::string> known);
 
 /// @returns the fewest letters to add, leave out, replace or exchange with their neighbour to turn a into b, ignoring
 /// case. Source: "optimal string alignment" distance.

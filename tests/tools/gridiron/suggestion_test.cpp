@@ -32,6 +32,14 @@ TEST(Suggestion, TheNearestAreNamed) {
   EXPECT_EQ(near_words(std::string(100'000, 'x'), options), Words{});
 }
 
+TEST(Suggestion, CapitalsMakeNoDifference) {
+  const Words words = {"z", "-z", "left"};
+  EXPECT_EQ(word_in_capitals("Z", words), "z");
+  EXPECT_EQ(word_in_capitals("-Z", words), "-z");
+  EXPECT_EQ(word_in_capitals("LeFt", words), "left");
+  for (const char* other : {"", "lef", "lefts", "y"}) EXPECT_FALSE(word_in_capitals(other, words)) << other;
+}
+
 TEST(Suggestion, SentencesEndInAQuestion) {
   const Words words = {"early", "late", "random"};
   EXPECT_EQ(did_you_mean("erly", words), "; did you mean early?");

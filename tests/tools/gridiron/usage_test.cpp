@@ -30,7 +30,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"info a.ply --fov 30"}, "--fov is not an option of info; render, animate, pack and job have it"},
       {{"render a.ply --configuration bets"}, "'bets' is not one of best|grid|reference|deep; did you mean best?"},
       {{"render a.ply --accuracy extract"}, "did you mean exact?"},
-      {{"render a.ply --shading Scene"}, "did you mean scene?"},
+      {{"render a.ply --shading Scenes"}, "did you mean scene?"},
       {{"experiment acuracy -o x"}, "did you mean accuracy?"},
       {{"render a.ply --size 640", "render a.ply --size 0x10"}, "WxH"},
       {{"render a.ply --size 16385x10"}, "16384"},
@@ -40,7 +40,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"render a.ply --up -w"}, "'-w' is not x, y, z"},
       {{"render a.ply --from above"}, "'above' is not front, back, left, right, top, bottom, iso or AZIMUTH"},
       {{"render a.ply --from botom"}, "from -90 to 90; did you mean bottom?"},
-      {{"render a.ply --up Z"}, "; did you mean z or -z?"},
+      {{"render a.ply --up zz"}, "; did you mean z"},
       {{"render a.ply --from 0,91"}, "elevation from -90 to 90"},
       {{"render a.ply --from top --eye 1,2,3"}, "--from and --eye: both say where the eye is"},
       {{"render a.ply --cores 0"}, "1 to 1024"},
@@ -288,6 +288,20 @@ TEST(Usage, AFullStandardOutputIsAnError) {
   command += " machines > /dev/full 2> /dev/null";
   const int status = std::system(command.c_str());
   EXPECT_NE(status, 0);
+}
+
+TEST(Usage, CapitalsInValuesMakeNoDifference) {
+  const TemporaryFolder folder;
+  folder.write_ply("a.ply", make_box({0, 0, 0}, {1, 2, 3}));
+  const auto picture = [&folder](const Words& options) {
+    const ProgramResult result =
+        run(folder, Words{"render", "a.ply", "-o", "a.png", "--mode", "plain", "--quiet"} + options);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return read_file(folder.path("a.png"));
+  };
+  const std::string expected = picture({"--up", "z", "--size", "16x8", "--from", "left", "--accuracy", "exact"});
+  EXPECT_EQ(picture({"--up", "Z", "--size", "16X8", "--from", "LEFT", "--accuracy", "Exact"}), expected);
+  EXPECT_NE(picture({"--up", "Y", "--size", "16X8", "--from", "LEFT"}), expected);
 }
 
 }  // namespace

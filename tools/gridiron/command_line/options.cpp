@@ -11,7 +11,8 @@ namespace {
 using sim::StoreSize;
 
 std::optional<CountPair> parse_picture_size(const std::string& text) {
-  const std::optional<CountPair> size = parse_count_pair(text, 'x');
+  std::optional<CountPair> size = parse_count_pair(text, 'x');
+  if (!size) size = parse_count_pair(text, 'X');
   const auto fits = [](std::uint32_t pixels) { return pixels >= 1 && pixels <= kMaxPictureWidth; };
   return size && fits(size->x) && fits(size->y) ? size : std::nullopt;
 }
@@ -65,7 +66,8 @@ void add_model_options(CLI::App& app, SceneRequest& scene) {
     return count && *count >= 1 ? std::optional(std::uint64_t{*count} << 20) : std::nullopt;
   };
   add_parsed(app, "--import-memory", scene.model.memory_bytes, megabytes, "a whole number above 0", "MB",
-             "OBJ, STL, glTF and others: memory that reading one may take (default: half of the host's)");
+             "OBJ, STL, glTF and others: memory that reading one may take (default: half of the host's "
+             "memory, at least 1024)");
   add_count(app, "--import-time", scene.model.most_seconds, 1, kMostSeconds,
             "OBJ, STL, glTF and others: seconds that reading one may take (default: 300)");
 }

@@ -29,13 +29,16 @@ struct Asked {
 };
 
 /// Adds an option whose text one of our own parsers converts; `expected` completes the error message, which suggests
-/// similar words from `words`, which shells offer too.
+/// similar words from `words`, which shells offer too. Capitals in these make no difference.
 template <class Target, class Parser>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, Target& target, Parser parser,
                         const std::string& expected, const std::string& type, const std::string& help,
                         const std::vector<std::string>& words = {}) {
   const auto set = [&target, parser, name, expected, words](const std::string& text) {
     auto value = parser(text);
+    if (!value) {
+      if (const auto word = word_in_capitals(text, words)) value = parser(*word);
+    }
     if (!value) throw CLI::ValidationError(name, "'" + text + "' is not " + expected + did_you_mean(text, words));
     target = *value;
   };
