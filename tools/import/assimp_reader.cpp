@@ -5,7 +5,10 @@
 #include <assimp/scene.h>
 #include <assimp/version.h>
 
+#include <algorithm>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -351,6 +354,30 @@ void read_frame(ModelFormat format, const std::string& ending, const aiScene& sc
   if (centimetres > 0 && centimetres < 1e9f) report.unit_metres = static_cast<double>(centimetres) / 100;
 }
 
+// What Assimp warns of indices that name nothing: it leaves such a corner or face out, or takes another vertex.
+class IndexWarnings final : public Assimp::LogStream {
+ public:
+  void write(const char* message) override {
+    constexpr std::size_t kMostWarnings = 3;
+    std::string text(message);
+    text.erase(0, text.find(": ") == std::string::npos ? 0 : text.find(": ") + 2);  // "Warn,  T1: "
+    text.erase(text.find_last_not_of("\r\n") + 1);
+    const auto has = [&text](const char* word) { return text.find(word) != std::string::npos; };
+    const bool is_of_index = has("index") || has("Index") || has("indices") || has("idx");
+    if (!is_of_index || !(has("range") || has("bounds") || has("nvalid"))) return;
+    if (warnings_.size() < kMostWarnings && std::ranges::find(warnings_, text) == warnings_.end()) {
+      warnings_.push_back(text);
+    }
+  }
+
+  void tell(std::vector<std::string>& ignored) const {
+    for (const std::string& text : warnings_) ignored.push_back("wrong indices (" + in_quotes(text) + ")");
+  }
+
+ private:
+  std::vector<std::string> warnings_;
+};
+
 bool is_shortage(const std::string& words) {
   return words.find("bad_alloc") != std::string::npos || words.find("emory") != std::string::npos;
 }
@@ -442,6 +469,9 @@ ImportedModel read_with_assimp(std::span<const std::byte> bytes, const ChildSett
   auto& files = *new AssimpFiles((folder / (stem + "." + settings.ending)).string(), bytes);
   importer.SetIOHandler(&files);
   const ModelFormat format = format_of_ending(settings.ending);
+  Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+  auto& warnings = *new IndexWarnings();
+  Assimp::DefaultLogger::get()->attachStream(&warnings, Assimp::Logger::Warn | Assimp::Logger::Err);
   std::optional<GltfText> text;
   std::string fault;  // of the text; Assimp names none
   if (format == ModelFormat::kGltf) text = GltfText::parse(bytes, files, fault);
@@ -471,6 +501,7 @@ ImportedModel read_with_assimp(std::span<const std::byte> bytes, const ChildSett
   report.meshes = joiner.mesh_count();
   report.textures = materials.texture_count();
   joiner.tell(report.ignored);
+  warnings.tell(report.ignored);
   materials.tell(report.ignored);
   tell_scene(scene, files, text ? &*text : nullptr, settings.moment.has_value(), report.ignored);
   model.neighbours = files.neighbours();

@@ -242,6 +242,16 @@ TEST(Import, LinesAndPointsAreReported) {
   EXPECT_TRUE(got.ignores("2 lines")) << testing::PrintToString(got.report.ignored);
 }
 
+// Assimp leaves out the faces, and only warns of it.
+TEST(Import, WrongIndicesOfGltfAreReported) {
+  TestMesh mesh = square();
+  mesh.triangles.emplace_back(0, 1, 99);
+  const Read got = read_file_of("a.gltf", gltf_text(mesh));
+  EXPECT_EQ(got.mesh.triangles.size(), 2u);
+  EXPECT_TRUE(got.ignores("wrong indices ('Some faces had out-of-range indices. Those faces were dropped.')"))
+      << testing::PrintToString(got.report.ignored);
+}
+
 TEST(Import, PolygonsAreCutIntoTriangles) {
   const Read got = read_file_of("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
   EXPECT_EQ(got.mesh.triangles.size(), 2u);

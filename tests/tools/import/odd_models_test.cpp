@@ -112,6 +112,17 @@ TEST(OddModels, Obj) {
   for (const Odd& odd : cases) check(odd);
 }
 
+// Assimp takes another vertex, or none, and only warns of it.
+TEST(OddModels, WrongIndicesAreReported) {
+  const std::string vertices = "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  check({"right.off", vertices + "3 0 1 2\n", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0}});
+  check({"wrong.off",
+         vertices + "3 0 1 7\n",
+         {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0},
+         {},
+         "wrong indices ('OFF: Vertex index is out of range')"});
+}
+
 TEST(OddModels, ObjMaterialsHaveNamesWithSpaces) {
   const TemporaryFolder folder("a.obj", "mtllib my materials.mtl\n" + std::string(kVertices) +
                                             "usemtl dark red\nf 1 2 3\nusemtl dark blue\nf 1 3 2\n");
