@@ -147,6 +147,16 @@ bool is_binary_stl(std::span<const std::byte> head, std::optional<std::uint64_t>
   return *file_bytes == kHeaderBytes + std::uint64_t{count} * kTriangleBytes;
 }
 
+// With a byte order mark or, in two characters of ASCII, without.
+bool is_utf16(std::span<const std::byte> head) {
+  const std::string_view text = text_of(head);
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return true;
+  const auto is_text = [&](std::size_t i) { return is_blank(text[i]) || (text[i] > ' ' && text[i] <= '~'); };
+  if (text.size() < 4) return false;
+  return (is_text(0) && text[1] == 0 && is_text(2) && text[3] == 0) ||
+         (text[0] == 0 && is_text(1) && text[2] == 0 && is_text(3));
+}
+
 std::string lower_ending(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
   if (!ending.empty()) ending.erase(0, 1);
@@ -190,6 +200,8 @@ std::string model_ending(std::span<const std::byte> head, const std::filesystem:
   if (const std::string_view own = ending_by_content(head, file_bytes); !own.empty()) return std::string(own);
   const std::string ending = lower_ending(path);
   if (std::ranges::find(kModelEndings, ending) != kModelEndings.end()) {
+    // Assimp converts it for formats that are XML and some others, and finds nothing in these.
+    if (is_one_of(ending, {"obj", "stl", "gltf", "glb"}) && is_utf16(head)) return "";
     const Magic* const magic = magic_of(head);
     return magic == nullptr || magic->may_be_model ? ending : "";
   }
@@ -231,6 +243,7 @@ std::string words_of_content(std::span<const std::byte> head, std::optional<std:
   if (const char* words = words_of_marked_content(head)) return words;
   const std::string_view text = text_of(head);
   if (is_binary_stl(head, file_bytes)) return "is an STL mesh";
+  if (is_utf16(head)) return "is UTF-16 text; save it as UTF-8";
   if (is_text_scene(head)) return "is a text scene";
   if (!is_binary(head)) {
     if (const char* words = words_of_text(text)) return words;

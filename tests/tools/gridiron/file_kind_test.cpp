@@ -57,7 +57,9 @@ TEST(FileKind, ModelsAreKnownByTheirContentElseByTheirName) {
       {"solid x\n", "a", "stl"},        {stl, "a", "stl"},               {"solid" + stl.substr(5), "a.obj", "stl"},
       {"\x89PNG", "a.obj", ""},         {"\x1F\x8B", "a.obj", ""},       {"PK\x03\x04", "a.3mf", "3mf"},
       {"PK\x03\x04", "a", ""},         {"ply\n", "a.obj", ""},          {"", "a.obj", ""},
-      {"OFF\n", "a", "off"},            {"anything", "a.fbx", "fbx"},    {"v 1 2 3\n", "a.nff", ""}};
+      {"OFF\n", "a", "off"},            {"anything", "a.fbx", "fbx"},    {"v 1 2 3\n", "a.nff", ""},
+      {"\xFF\xFEv\0 \0"s, "a.obj", ""}, {"v\0 \0"s, "a.obj", ""},       {"\xFF\xFE<\0?\0"s, "a.dae", "dae"},
+      {"\xFF\xFE" + stl.substr(2), "a.stl", "stl"}};
   for (const auto& each : cases) {
     EXPECT_EQ(tool::model_ending(bytes_of(each.content), each.name, each.content.size()), each.ending)
         << each.content.substr(0, 10) << " " << each.name;
@@ -90,6 +92,10 @@ TEST(FileKind, WhatIsNotReadIsNamed) {
       {"b 0 0 0\n", "is a text scene"},
       {"eye 1 2 3\n", "is a camera file"},
       {"based_on cell-ps3\n", "is a machine file"},
+      {"\xFF\xFEp\0l\0y\0"s, "is UTF-16 text; save it as UTF-8"},
+      {"\xFE\xFF\0p\0l\0y"s, "is UTF-16 text; save it as UTF-8"},
+      {"p\0l\0y\0\n\0"s, "is UTF-16 text; save it as UTF-8"},
+      {"\0p\0l\0y"s, "is UTF-16 text; save it as UTF-8"},
       {"# nothing\n", "holds nothing but blanks and comments"},
       {"\1\2\3\0abcdefgh"s, "is of no known kind: it begins with '\\x01\\x02\\x03\\x00abcd'"},
   };

@@ -57,6 +57,10 @@ TEST(RenderFailure, ScenesWithoutATriangleToTrace) {
   TestMesh cloud = make_sphere(8, 12, 1.0f);
   cloud.triangles.clear();
   folder.write_ply("cloud.ply", cloud);
+  folder.write("edges.ply",
+               "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+               "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n0 0 0\n1 0 0\n0 1\n");
+  expect_failure(folder, {"render", "edges.ply"}, 1, "edges.ply: no triangles: it holds 1 line\n");
   folder.write_ply("line.ply", make_triangle(Vec3(0), Vec3(1, 0, 0), Vec3(2, 0, 0)));
   expect_failure(folder, {"render", "cloud.ply"}, 1, "cloud.ply: no triangles: a point cloud of ");
   expect_failure(folder, {"render", "line.ply"}, 1, "line.ply: no triangle to trace: all 1 have zero area");

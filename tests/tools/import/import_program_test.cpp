@@ -62,6 +62,10 @@ TEST(ImportProgram, ErrorsNameTheFile) {
   expect_failure(folder, {"render", "a.obj", "--import-memory", "0"}, 2, "is not a whole number above 0");
   folder.write("b.obj", "v 0 0 0\n");
   expect_failure(folder, {"render", "b.obj"}, 1, "b.obj: ");
+  folder.write("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
+  expect_failure(folder, {"render", "lines.obj"}, 1, "lines.obj: no triangles: it holds 1 line\n");
+  folder.write("wide.obj", std::string("\xFF\xFEv\0 \0", 6));
+  expect_failure(folder, {"render", "wide.obj"}, 1, "wide.obj: is UTF-16 text; save it as UTF-8; expected a scene: ");
 }
 
 // The place of a triangle tells which animation is shown.

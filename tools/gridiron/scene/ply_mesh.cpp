@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "base/failure.h"
+#include "base/numbers.h"
 #include "base/words.h"
 #include "files/interrupt.h"
 #include "import/srgb.h"
@@ -71,6 +73,16 @@ Mesh read_ply_mesh(std::span<const std::byte> bytes, const std::filesystem::path
   if (has_normals) keep_normals(mesh);
   if (has_colors) keep_colors(mesh);
   return mesh;
+}
+
+std::uint64_t count_ply_lines(std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string_view header = text.substr(0, text.find("end_header"));
+  constexpr std::string_view kEdges = "\nelement edge ";
+  const std::size_t begin = header.find(kEdges);
+  if (begin == std::string_view::npos) return 0;
+  const std::string_view row = header.substr(begin + kEdges.size());
+  return parse_count(row.substr(0, row.find_first_of("\r\n"))).value_or(0);
 }
 
 Mesh read_ply_mesh(const std::filesystem::path& path) {

@@ -160,6 +160,14 @@ void tell_model(const SceneInput& input) {
   std::fprintf(stderr, "%s: ignored: %s\n", input.path.c_str(), words_of_list(report.ignored).c_str());
 }
 
+// What a file without triangles holds.
+std::string words_without_triangles(const SceneInput& input, const Mesh& mesh) {
+  if (input.model && !input.model->ignored.empty()) return "it holds " + words_of_list(input.model->ignored);
+  if (mesh.vertices.empty()) return "it holds no vertex that a face names";
+  return "a point cloud of " + words_of_count(mesh.vertices.size()) +
+         (mesh.vertices.size() == 1 ? " vertex" : " vertices");
+}
+
 void require_tolerance(std::optional<float> tolerance, SceneKind kind) {
   if (tolerance && kind != SceneKind::kText) usage_error("--tolerance: applies to text scenes (NFF) only");
 }
@@ -257,6 +265,8 @@ SceneInput read_scene_input(const std::filesystem::path& path, std::optional<flo
       input.model.emplace();
       input.model->format = "PLY";
       input.model->meshes = 1;
+      const std::uint64_t lines = count_ply_lines(file.bytes);
+      if (lines != 0) input.model->ignored.push_back(words_of_count(lines, "line"));
     } else if (kind == SceneKind::kPacked) {
       input.content = open_packed_scene(std::move(file), path);
     } else {
@@ -366,11 +376,9 @@ GridChoice choose_grid(const SceneInput& input, const Mesh& mesh, const SceneReq
                                 (input.text ? "; a greater --tolerance makes fewer triangles" : ""));
   }
   if (status == Status::kNoTriangles) {
-    input_error(input.path,
-                mesh.triangles.empty()
-                    ? "no triangles: a point cloud of " + words_of_count(mesh.vertices.size()) +
-                          (mesh.vertices.size() == 1 ? " vertex" : " vertices")
-                    : "no triangle to trace: all " + words_of_count(mesh.triangles.size()) + " have zero area");
+    input_error(input.path, mesh.triangles.empty() ? "no triangles: " + words_without_triangles(input, mesh)
+                                                   : "no triangle to trace: all " +
+                                                         words_of_count(mesh.triangles.size()) + " have zero area");
   }
   if (status != Status::kOk) input_error(input.path, std::string("cannot build the scene image: ") + words_of(status));
   if (choice.parameters.has_grid) choice.parameters.lambda = choice.need.grid.lambda;

@@ -109,6 +109,9 @@ void tell_notes(const SceneInput& input, bool tells_model = true);
 [[nodiscard]] Mesh read_ply_mesh(const std::filesystem::path& path);
 [[nodiscard]] Mesh read_ply_mesh(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
+/// @returns the lines of a PLY mesh that was read, which are no part of it: rows of the element "edge".
+[[nodiscard]] std::uint64_t count_ply_lines(std::span<const std::byte> bytes);
+
 /// Limits of a scene image.
 struct ImageLimits {
   TriangleFormat format = TriangleFormat::kVertices;
