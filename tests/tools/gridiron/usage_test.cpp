@@ -16,7 +16,7 @@ TEST(Usage, MistakesExitWithTwoAndSayWhy) {
       {{"help machine"}, "'machine' is not a command; did you mean machines?"},
       {{"help render info"}, "'info' is an argument too many; help takes COMMAND"},
       {{"--verson"}, "--verson is not an option of gridiron; did you mean --version?"},
-      {{"--fov 30 render a.ply"}, "put it after a command: render, animate or job have it"},
+      {{"--fov 30 render a.ply"}, "put it after a command: render, animate, pack or job have it"},
       {{"--quiet"}, "--quiet is not an option of gridiron; put it after a command: render"},
       {{"experiment paper"}, "-o DIR is required"},
       {{"render", "info"}, "INPUT"},
