@@ -97,6 +97,10 @@ void run_command(const PackRequest& request) {
   }
 
   const std::optional<ViewRequest> view = give_look(request, std::move(picture), input);
+  if (input.effects && request.format == TriangleFormat::kProjection) {
+    throw Failure(ExitCode::kUsage,
+                  "--format projection is for a mesh alone; lights and materials need triangles as vertices");
+  }
   const SceneRequest scene = completed(request, known_scene(input));
   if (!scene.quiet) {
     tell_notes(input);

@@ -111,6 +111,8 @@ TEST(Pack, KeepsALook) {
     EXPECT_EQ(hash_of(run(folder, Words{"render", "a.gri", "--size", "32x32"} + view)), hash);
   }
   expect_failure(folder, {"pack", "a.ply", "-o", "b.gri", "--fov", "50"}, 2, "place the lights of a look");
+  expect_failure(folder, {"pack", "a.ply", "-o", "b.gri", "--look", "studio", "--format", "projection"}, 2,
+                 "--format projection is for a mesh alone; lights and materials need triangles as vertices");
 }
 
 TEST(Pack, SaysWhatItDoesNotKeep) {

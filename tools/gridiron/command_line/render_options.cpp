@@ -200,8 +200,8 @@ Finish add_animate(CLI::App& app) {
   CLI::Option* frames =
       app.add_option(
              "FRAMES", animate.inputs,
-             "meshes or text scenes in the order of their frames; of a folder all .ply files, or all .nff "
-             "files, by name; one mesh, text scene or packed scene with --path or --turntable; - is standard input")
+             "meshes or text scenes in the order of their frames; of a folder, by name, all .ply files, "
+             "or all .nff files, or all models; one mesh, text scene or packed scene with --path or --turntable; - is standard input")
           ->required()
           ->type_name("");
   set_offer(*frames, {.words = {}, .endings = kSceneEndings, .has_files = true, .has_folders = true});
