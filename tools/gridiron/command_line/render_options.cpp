@@ -198,10 +198,10 @@ Finish add_animate(CLI::App& app) {
   AnimateRequest& animate = asked->request;
   RenderRequest& render = animate.render;
   CLI::Option* frames =
-      app.add_option(
-             "FRAMES", animate.inputs,
-             "meshes or text scenes in the order of their frames; of a folder, by name, all .ply files, "
-             "or all .nff files, or all models; one mesh, text scene or packed scene with --path or --turntable; - is standard input")
+      app.add_option("FRAMES", animate.inputs,
+                     "meshes or text scenes in the order of their frames; of a folder, by name, all .ply files, "
+                     "or all .nff files, or all models; one mesh, text scene or packed scene with --path or "
+                     "--turntable; - is standard input")
           ->required()
           ->type_name("");
   set_offer(*frames, {.words = {}, .endings = kSceneEndings, .has_files = true, .has_folders = true});
