@@ -78,11 +78,16 @@ void RunningProgram::wait_until_caught(int signal) const {
 
 pid_t RunningProgram::stop_child() const {
   const std::string id = std::to_string(process_);
+  const std::string own = read_file("/proc/" + id + "/cmdline");
   for (int i = 0; i < 60000; ++i) {
     std::ifstream file("/proc/" + id + "/task/" + id + "/children");
     if (pid_t child = -1; file >> child) {
-      ::kill(child, SIGSTOP);
-      return child;
+      // Before its exec the parent waits for it inside of vfork, where no signal reaches either.
+      const std::string words = read_file("/proc/" + std::to_string(child) + "/cmdline");
+      if (!words.empty() && words != own) {
+        ::kill(child, SIGSTOP);
+        return child;
+      }
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
