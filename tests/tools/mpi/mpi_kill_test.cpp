@@ -70,6 +70,12 @@ TEST_F(MpiKill, AtTenMomentsAndResumed) {
   const std::map<std::string, std::string> whole = files_of(folder_.path("alone"));
   std::mt19937 random(27);
   int ended_early = 0;
+  const auto pictures = [this] {
+    std::size_t count = 0;
+    if (!fs::exists(folder_.path("out"))) return count;
+    for (const auto& entry : fs::directory_iterator(folder_.path("out"))) count += entry.path().extension() == ".png";
+    return count;
+  };
   for (int i = 0; i < 10; ++i) {
     SCOPED_TRACE("moment " + std::to_string(i));
     const bool begins = i % 3 == 0;  // else it goes on with what the last one left
@@ -78,7 +84,10 @@ TEST_F(MpiKill, AtTenMomentsAndResumed) {
     std::vector<pid_t> ranks;
     for (int wait = 0; wait < 2000 && (ranks = ranks_of(mpirun)).size() < 3; ++wait) ::usleep(5000);
     ASSERT_EQ(ranks.size(), 3u);
-    std::this_thread::sleep_for(std::chrono::milliseconds(500 + random() % 2500));
+    // By pictures, not by the clock: some time after the next one, two or three. Of twelve, three rounds leave some.
+    const std::size_t wanted = pictures() + 1 + random() % 3;
+    while (pictures() < wanted && ::kill(mpirun, 0) == 0 && !read_state(ranks[0]).empty()) ::usleep(1000);
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 20));
     ::kill(ranks[random() % 3], random() % 2 == 0 ? SIGKILL : SIGTERM);
     const int code = wait_for(mpirun, ranks);
     const std::string words = read_file(folder_.path("err.txt"));
