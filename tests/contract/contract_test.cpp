@@ -15,7 +15,7 @@ namespace {
 /// Main memory, an arena and tiles, shared by all benches.
 class HostBench {
  public:
-  explicit HostBench(std::uint32_t queue_depth) : memory_(kMainBytes + 8192), tiles_(0, kItemCount) {
+  explicit HostBench(std::uint32_t queue_depth) : memory_(kMainBytes + 8192), tiles_(kItemCount) {
     region_ = *memory_.allocate(kMainBytes, 4096);
     limits_.queue_depth = queue_depth;
   }

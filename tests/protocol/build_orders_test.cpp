@@ -76,7 +76,7 @@ class OrderBuild {
     std::ranges::copy(before_, written_.bytes.begin());
     const std::span<std::byte> bytes(reinterpret_cast<std::byte*>(store_.get()), sizeof(BuildStore<OrderBuildLayout>));
     std::ranges::fill(bytes, std::byte{0xC3});
-    sim::ItemSource items(0, plan_.item_counts[pass_]);
+    sim::ItemSource items(plan_.item_counts[pass_]);
     sim::SimFrame shared;
     shared.memory = &memory_;
     shared.tiles = &items;

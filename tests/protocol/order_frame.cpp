@@ -106,7 +106,7 @@ OrderOutcome OrderFrame::run_layout(LocalStore<Layout>& store, const OrderPlan& 
   std::fill(spill_.bytes.begin(), spill_.bytes.end(), std::byte{0x22});
   const std::span<std::byte> bytes(reinterpret_cast<std::byte*>(&store), sizeof(store));
   std::fill(bytes.begin(), bytes.end(), std::byte{0xC3});
-  sim::ItemSource tiles(0, tile_count_);
+  sim::ItemSource tiles(tile_count_);
   sim::SimFrame shared;
   shared.memory = &memory_;
   shared.tiles = &tiles;

@@ -403,7 +403,8 @@ TEST(Passes, OptionsOfNoPossibleChipAreRefused) {
     options.threads = 0;
     expect_refused(good, options);
     options = {};
-    options.only_tile = 0;
+    const std::uint32_t first = 0;
+    options.only_tiles = {&first, 1};
     expect_refused(good, options);
     options = {};
     options.limits.queue_depth = 0;

@@ -1,10 +1,13 @@
 // Replay: its invariants and its determinism; closed forms are in replay_model_test.cpp.
 // Memory: std::vector. Threads: one. SPDX-License-Identifier: Apache-2.0
 #include <gridiron/dma/tags.h>
+#include <gridiron/platform/tile_order.h>
 #include <gridiron/sim/machine_profile.h>
 #include <gridiron/sim/replay.h>
 
+#include <algorithm>
 #include <ctime>
+#include <random>
 
 #include "replay_cases.h"
 
@@ -294,6 +297,47 @@ TEST(Replay, TwiceIsEqualToTheLastDigit) {
   const FrameTrace copy = trace;
   EXPECT_EQ(fingerprint(replay(trace, machine, {.core_count = 6, .timeline = true})), first);
   EXPECT_EQ(fingerprint(replay(copy, machine, {.core_count = 6, .timeline = true})), first);
+}
+
+// Traces that come one after another, in the order of claims, by falling number, and in a random order.
+TEST(Replay, TracesThatComeLaterChangeNothing) {
+  std::mt19937 random(5);
+  for (const char* name : {"cell-ps3", "cell-ps3-tlb", "fu540"}) {
+    for (const bool is_middle_out : {false, true}) {
+      for (const bool is_assigned : {false, true}) {
+        SCOPED_TRACE(std::string(name) + (is_middle_out ? ", middle out" : "") + (is_assigned ? ", assigned" : ""));
+        const MachineProfile& machine = *find_machine_profile(name);
+        FrameTrace trace = synthetic_frame(3, 65, 4);
+        trace.is_middle_out = is_middle_out;
+        std::vector<std::uint32_t> core_of_tile(65);
+        for (std::uint32_t& core : core_of_tile) core = static_cast<std::uint32_t>(random() % 5);
+        ReplayOptions options = {.core_count = 5, .timeline = true};
+        if (is_assigned) options.core_of_tile = core_of_tile;
+        const std::string expected = fingerprint(replay(trace, machine, options));
+        FrameTrace frame = trace;
+        frame.tiles.clear();
+        std::vector<std::uint32_t> claims;
+        for (std::uint32_t claim = 0; claim < 65; ++claim) {
+          claims.push_back(is_middle_out ? middle_out(claim, 65) : claim);
+        }
+        std::vector<std::uint32_t> falling(claims.rbegin(), claims.rend()), any = claims;
+        std::ranges::shuffle(any, random);
+        for (const std::vector<std::uint32_t>& order : {claims, falling, any}) {
+          FrameClock clock(frame, 65, machine, options);
+          std::size_t most_waiting = 0;
+          for (const std::uint32_t tile : order) {
+            clock.take(trace.tiles[tile]);
+            most_waiting = std::max(most_waiting, clock.waiting_count());
+          }
+          EXPECT_EQ(clock.waiting_count(), 0u);
+          if (!is_assigned && order != any) {
+            EXPECT_EQ(most_waiting, order == claims ? 0u : 64u) << "a trace whose turn has come is not kept";
+          }
+          EXPECT_EQ(fingerprint(clock.finish()), expected);
+        }
+      }
+    }
+  }
 }
 
 TEST(Replay, TimelineCoversEveryCycleThatIsNotIdle) {

@@ -171,7 +171,7 @@ std::vector<TracedRay> trace_secondary_rays(PreparedEffectFrame& frame) {
   notes.light_kind = (memory.image.effects.called_for & kAreaLights) != 0 ? RayKind::kArea : RayKind::kShadow;
   const auto store = std::make_unique<LocalStore<TappedLayout>>();
   store->rays.notes = &notes;
-  sim::ItemSource tiles(0, memory.record.tiles_x * memory.record.tiles_y);
+  sim::ItemSource tiles(memory.record.tiles_x * memory.record.tiles_y);
   PlatformLimits limits;
   limits.queue_depth = frame.plan.scene.machine->queue_depth;
   sim::PlainCore core(memory.memory.base(), limits, tiles);

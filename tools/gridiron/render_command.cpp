@@ -50,14 +50,14 @@ HostTime time_of(const HostSeconds& seconds) {
 
 // A frame that was rendered one or more times, always with the same pictures.
 struct Repeated {
-  sim::ChipResult result;
+  DividedFrame frame;
   PlaneHashes hashes;
   HostSeconds build, render;  // the least of all
 };
 
 ReportInput collect_report(const RenderPlan& plan, const SceneInput& input, const FrameMemory& frame,
                            const Repeated& repeated, const sim::FrameTiming& timing) {
-  const sim::ChipResult& result = repeated.result;
+  const sim::ChipResult& result = repeated.frame.chip;
   ReportInput report;
   report.mode = word_of(plan.mode);
   report.configuration = plan.scene.configuration->name;
@@ -93,7 +93,7 @@ ReportInput collect_report(const RenderPlan& plan, const SceneInput& input, cons
   report.host_threads = plan.threads;
   report.lanes = plan.lanes;
   report.repeats = plan.repeats;
-  report.trace_bytes = result.trace.packed_bytes();
+  report.trace_bytes = repeated.frame.trace_bytes;
   report.image_hash = repeated.hashes.color;
   if (plan.outputs.depth) report.depth_hash = repeated.hashes.depth;
   if (plan.outputs.ids) report.ids_hash = repeated.hashes.ids;
@@ -187,7 +187,9 @@ PlaneHashes hashes_of(const FrameMemory& frame, const RenderPlan& plan) {
 }
 
 // Builds and renders as often as requested. A packed scene is not built: it moves into main memory and stays there.
-Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& requested) {
+// `replay` is that of render_divided().
+Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& requested,
+                           const sim::ReplayOptions* replay) {
   const RenderPlan& plan = requested.plan;
   const bool is_packed = std::holds_alternative<PackedScene>(requested.input.content);
   std::optional<Progress> progress;  // begins once the first image is built: the time left is that of tiles
@@ -208,7 +210,7 @@ Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& re
     const auto report = [&](std::uint32_t done, std::uint32_t total) {
       progress->update(std::uint64_t{repeat} * total + done, std::uint64_t{plan.repeats} * total);
     };
-    repeated.result = render_divided(*frame, plan, report);
+    repeated.frame = render_divided(*frame, plan, replay, report);
     const HostSeconds render = stopwatch.both();
     const PlaneHashes hashes = hashes_of(*frame, plan);
     repeated.build = repeat == 0 ? frame->build_seconds : repeated.build.least(frame->build_seconds);
@@ -238,7 +240,7 @@ void render_for_first(const RenderRequest& request) {
   std::optional<FrameMemory> frame;
   for (std::uint32_t repeat = 0; repeat < plan.repeats; ++repeat) {
     if (repeat == 0 || !is_packed) share_frame(frame);
-    (void)render_divided(*frame, plan, [](std::uint32_t, std::uint32_t) {});
+    (void)render_divided(*frame, plan, nullptr, [](std::uint32_t, std::uint32_t) {});
   }
 }
 
@@ -253,15 +255,19 @@ void run_command(const RenderRequest& request) {
   const FrameOutputs& outputs = plan.outputs;
   give_plan(requested);
   std::optional<FrameMemory> memory;
-  const Repeated repeated = render_repeatedly(memory, requested);
+  const sim::ReplayOptions replay = {.core_count = plan.cores,
+                                     .timeline = outputs.timeline.has_value() || plan.has_bound};
+  // A bound is compared with the traces.
+  Repeated repeated = render_repeatedly(memory, requested, has_time(plan) && !plan.has_bound ? &replay : nullptr);
   const FrameMemory& frame = *memory;
   const Picture<std::uint32_t> color = plane_words(frame, plan, frame.color);
   sim::FrameTiming timing;
   std::optional<WorstTiles> worst;
   if (has_time(plan)) {
-    timing = sim::replay(repeated.result.trace, *plan.scene.machine,
-                         {.core_count = plan.cores, .timeline = outputs.timeline.has_value() || plan.has_bound});
-    if (plan.has_bound) worst = collect_worst_tiles(plan, *memory, repeated.result.trace, timing);
+    const sim::FrameTrace& trace = repeated.frame.chip.trace;
+    timing =
+        repeated.frame.timing ? std::move(*repeated.frame.timing) : sim::replay(trace, *plan.scene.machine, replay);
+    if (plan.has_bound) worst = collect_worst_tiles(plan, *memory, trace, timing);
   }
 
   AtomicFiles files;
@@ -280,7 +286,7 @@ void run_command(const RenderRequest& request) {
   files.commit_at_end();
 
   if (plan.scene.quiet) return;
-  if (!plan.tile) tell_note(input.path, unseen_note(*memory, repeated.result, plan.mode));
+  if (!plan.tile) tell_note(input.path, unseen_note(*memory, repeated.frame.chip, plan.mode));
   print_picture(plan, color, repeated.hashes.color);
   if (has_time(plan)) print_timing(plan, timing);
   if (has_time(plan) && plan.shading == Shading::kScene) print_stages(timing, frame.image.effects.samples_per_pixel);

@@ -62,6 +62,23 @@ struct CoreRun {
   std::uint32_t tile = kNoTile;  ///< that the status belongs to
 };
 
+/// The tiles of a run, by their place: all of a frame, or those of ChipOptions::only_tiles.
+class TileList {
+ public:
+  TileList(std::span<const std::uint32_t> only_tiles, std::uint32_t tile_count) : only_(only_tiles), all_(tile_count) {}
+
+  [[nodiscard]] std::uint32_t count() const { return only_.empty() ? all_ : static_cast<std::uint32_t>(only_.size()); }
+  [[nodiscard]] std::uint32_t at(std::uint32_t place) const { return only_.empty() ? place : only_[place]; }
+  [[nodiscard]] std::uint32_t place_of(std::uint32_t tile) const {
+    if (only_.empty()) return tile;
+    return static_cast<std::uint32_t>(std::lower_bound(only_.begin(), only_.end(), tile) - only_.begin());
+  }
+
+ private:
+  std::span<const std::uint32_t> only_;
+  std::uint32_t all_;
+};
+
 void run_core(CoreRun& run, const GuardedArena& arena, const CoreProgram& program, ItemSource& tiles) {
   SimCore& core = *run.core;
   const Status returned = program(core, arena.data());
@@ -97,19 +114,19 @@ void run_core(CoreRun& run, const GuardedArena& arena, const CoreProgram& progra
 /// @param tile_bytes  of each tile, over all planes; tiles are known not to overlap, so that many bytes are all of
 ///                    them.
 [[nodiscard]] std::vector<Violation> check_complete(const std::vector<CoreRun>& runs, std::uint64_t tile_bytes,
-                                                    std::uint32_t first_tile, std::uint32_t end_tile) {
-  std::vector<bool> is_claimed(end_tile - first_tile);
-  std::vector<std::uint64_t> put_bytes(end_tile - first_tile);
+                                                    const TileList& tiles) {
+  std::vector<bool> is_claimed(tiles.count());
+  std::vector<std::uint64_t> put_bytes(tiles.count());
   for (const CoreRun& run : runs) {
-    for (const TileTrace& trace : run.core->traces) is_claimed[trace.tile_id - first_tile] = true;
+    for (const TileTrace& trace : run.core->traces) is_claimed[tiles.place_of(trace.tile_id)] = true;
     for (const TileFootprint& footprint : run.core->footprints) {
-      if (footprint.tile_id != kNoTile) put_bytes[footprint.tile_id - first_tile] += covered_bytes(footprint.puts);
+      if (footprint.tile_id != kNoTile) put_bytes[tiles.place_of(footprint.tile_id)] += covered_bytes(footprint.puts);
     }
   }
   for (std::uint32_t i = 0; i < is_claimed.size(); ++i) {
-    if (!is_claimed[i]) return {{Status::kIncompleteFrame, 0, first_tile + i, "no core claimed the tile"}};
+    if (!is_claimed[i]) return {{Status::kIncompleteFrame, 0, tiles.at(i), "no core claimed the tile"}};
     if (put_bytes[i] < tile_bytes) {
-      return {{Status::kIncompleteFrame, 0, first_tile + i,
+      return {{Status::kIncompleteFrame, 0, tiles.at(i),
                std::to_string(put_bytes[i]) + " of the tile's " + std::to_string(tile_bytes) + " bytes were put"}};
     }
   }
@@ -123,6 +140,11 @@ bool are_limits_valid(const PlatformLimits& limits) {
   return is_power_of_two_or_zero(limits.alignment_bytes) && is_power_of_two_or_zero(limits.congruence_bytes) &&
          is_power_of_two_or_zero(limits.boundary_bytes) && limits.max_transfer_bytes > 0 && limits.tag_count >= 1 &&
          limits.tag_count <= 32 && limits.queue_depth >= 1 && limits.congruence_bytes <= kLineBytes;
+}
+
+bool are_tiles_valid(std::span<const std::uint32_t> only_tiles, std::uint32_t tile_count) {
+  const auto out_of_order = std::adjacent_find(only_tiles.begin(), only_tiles.end(), std::greater_equal<>());
+  return only_tiles.empty() || (out_of_order == only_tiles.end() && only_tiles.back() < tile_count);
 }
 
 bool is_spill_valid(SimMemory& memory, const SpillMemory& spill, std::uint32_t cores,
@@ -144,16 +166,14 @@ namespace {
 [[nodiscard]] ChipResult run_on_host(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
                                      const CoreProgram& program) {
   ChipResult result;
-  const bool one_tile = options.only_tile.has_value();
   if (!are_limits_valid(options.limits) || options.threads == 0 || shape.output_depth == 0 || shape.data_bytes == 0 ||
       shape.data_bytes > shape.arena_bytes || !is_spill_valid(memory, options.spill, options.threads, shape.writable) ||
-      (one_tile && *options.only_tile >= shape.tile_count)) {
+      !are_tiles_valid(options.only_tiles, shape.tile_count)) {
     result.status = Status::kBadParameter;
     return result;
   }
-  const std::uint32_t first_tile = one_tile ? *options.only_tile : 0;
-  const std::uint32_t end_tile = one_tile ? first_tile + 1 : shape.tile_count;
-  ItemSource tiles(first_tile, end_tile, options.abort, options.progress);
+  const TileList list(options.only_tiles, shape.tile_count);
+  ItemSource tiles(shape.tile_count, options.only_tiles, options.abort, options.progress);
 
   SimFrame frame;
   frame.memory = &memory;
@@ -214,10 +234,10 @@ namespace {
       std::uint64_t picture_bytes = 0;
       for (const MainRange& range : shape.writable) picture_bytes += range.end - range.begin;
       const std::uint64_t tile_bytes = picture_bytes / shape.tile_count;
-      for (const Violation& violation : check_complete(runs, tile_bytes, first_tile, end_tile)) fail(violation);
+      for (const Violation& violation : check_complete(runs, tile_bytes, list)) fail(violation);
     }
     if (shape.claims_all && result.status == Status::kOk) {
-      for (const Violation& violation : check_complete(runs, 0, first_tile, end_tile)) fail(violation);
+      for (const Violation& violation : check_complete(runs, 0, list)) fail(violation);
     }
   }
 
@@ -225,13 +245,13 @@ namespace {
   result.trace.output_depth = shape.output_depth;
   result.trace.engine = shape.engine;
   result.trace.is_middle_out = shape.engine == &kTreeEngine;
-  result.trace.tiles.resize(end_tile - first_tile);
-  for (std::uint32_t i = 0; i < result.trace.tiles.size(); ++i) result.trace.tiles[i].tile_id = first_tile + i;
+  result.trace.tiles.resize(list.count());
+  for (std::uint32_t i = 0; i < list.count(); ++i) result.trace.tiles[i].tile_id = list.at(i);
   for (CoreRun& run : runs) {
     result.transfers += run.core->transfers();
     for (std::uint32_t kind = 0; kind < kWorkKindCount; ++kind) result.work[kind] += run.core->tile_work[kind];
     for (TileTrace& trace : run.core->traces) {
-      result.trace.tiles[trace.tile_id - first_tile] = std::move(trace);
+      result.trace.tiles[list.place_of(trace.tile_id)] = std::move(trace);
     }
   }
   result.trace.prologue = std::move(runs[0].core->prologue);
@@ -253,9 +273,7 @@ ChipResult run_cores(SimMemory& memory, const FrameShape& shape, const ChipOptio
 ChipResult run_plain_cores(SimMemory& memory, const FrameShape& shape, const ChipOptions& options,
                            const PlainProgram& program) {
   ChipResult result;
-  const bool one_tile = options.only_tile.has_value();
-  const std::uint32_t first_tile = one_tile ? *options.only_tile : 0;
-  ItemSource tiles(first_tile, one_tile ? first_tile + 1 : shape.tile_count, options.abort, options.progress);
+  ItemSource tiles(shape.tile_count, options.only_tiles, options.abort, options.progress);
 
   struct FreeArena {
     void operator()(std::byte* bytes) const { ::operator delete (bytes, std::align_val_t{kLineBytes}); }

@@ -48,7 +48,7 @@ using PlainProgram = std::function<Status(PlainCore& core, std::span<std::byte> 
                                    const CoreProgram& program);
 
 /// Runs `program` on options.threads plain cores: unchecked, without a trace or violations. Of the options it takes
-/// threads, limits, spill, only_tile, abort and progress, which the caller has checked.
+/// threads, limits, spill, only_tiles, abort and progress, which the caller has checked.
 ///
 /// Errors: the program's, of the lowest tile that failed; kAborted; kIncompleteFrame as shape.claims_all says; throws
 /// shortages of the host, and what the program throws, once all threads have ended.
@@ -58,6 +58,9 @@ using PlainProgram = std::function<Status(PlainCore& core, std::span<std::byte> 
 /// @returns whether there is no spill memory, or `cores` slices of it are aligned, allocated and apart from `writable`.
 [[nodiscard]] bool is_spill_valid(SimMemory& memory, const SpillMemory& spill, std::uint32_t cores,
                                   std::span<const MainRange> writable);
+
+/// @returns whether ChipOptions::only_tiles are rising, and of a frame with so many tiles.
+[[nodiscard]] bool are_tiles_valid(std::span<const std::uint32_t> only_tiles, std::uint32_t tile_count);
 
 /// @returns whether `limits` describe a possible platform: powers of two, and counts above zero.
 [[nodiscard]] bool are_limits_valid(const PlatformLimits& limits);

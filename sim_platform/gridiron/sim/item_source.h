@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <span>
 #include <utility>
 
 namespace gridiron::sim {
@@ -21,12 +22,11 @@ class ItemSource {
  public:
   using Progress = std::function<void(std::uint32_t done, std::uint32_t total)>;
 
-  /// Items [first_item, end_item). `abort` may be null.
-  ItemSource(std::uint32_t first_item, std::uint32_t end_item, const std::atomic<bool>* abort = nullptr,
-             Progress progress = {})
-      : next_(first_item),
-        end_item_(end_item),
-        total_(end_item - first_item),
+  /// Items 0 to item_count - 1, or those of `list` alone: rising, borrowed. `abort` may be null.
+  explicit ItemSource(std::uint32_t item_count, std::span<const std::uint32_t> list = {},
+                      const std::atomic<bool>* abort = nullptr, Progress progress = {})
+      : list_(list),
+        total_(list.empty() ? item_count : static_cast<std::uint32_t>(list.size())),
         abort_(abort),
         progress_(std::move(progress)) {}
 
@@ -36,9 +36,9 @@ class ItemSource {
       return {ItemClaim::Kind::kAborted, 0};
     }
     // A core claims once more after the last item, so the counter cannot reach the end of its range.
-    const std::uint64_t item = next_.fetch_add(1, std::memory_order_relaxed);
-    if (item >= end_item_) return {ItemClaim::Kind::kNone, 0};
-    return {ItemClaim::Kind::kItem, static_cast<std::uint32_t>(item)};
+    const std::uint64_t claim = next_.fetch_add(1, std::memory_order_relaxed);
+    if (claim >= total_) return {ItemClaim::Kind::kNone, 0};
+    return {ItemClaim::Kind::kItem, list_.empty() ? static_cast<std::uint32_t>(claim) : list_[claim]};
   }
 
   /// Reports that a claimed item is finished. Errors: whatever the progress call throws.
@@ -48,8 +48,8 @@ class ItemSource {
   void stop() { stopped_.store(true, std::memory_order_relaxed); }
 
  private:
-  std::atomic<std::uint64_t> next_;
-  std::uint64_t end_item_;
+  std::atomic<std::uint64_t> next_{0};
+  std::span<const std::uint32_t> list_;
   std::uint32_t total_;
   const std::atomic<bool>* abort_;
   std::atomic<bool> stopped_{false};

@@ -59,8 +59,8 @@ namespace {
 
 /// What is the same for all passes. Passes check the rest.
 [[nodiscard]] bool is_valid(SimMemory& memory, const Pass& pass, const ChipOptions& options) {
-  return !options.only_tile && options.threads != 0 && are_limits_valid(options.limits) && pass.output_depth != 0 &&
-         pass.data_bytes != 0 && pass.data_bytes <= arena_bytes(options.store) &&
+  return options.only_tiles.empty() && options.threads != 0 && are_limits_valid(options.limits) &&
+         pass.output_depth != 0 && pass.data_bytes != 0 && pass.data_bytes <= arena_bytes(options.store) &&
          is_spill_valid(memory, options.spill, options.threads, in_order(pass.writable));
 }
 

@@ -85,7 +85,7 @@ struct PassesResult {
 /// SimCore::AccessScope), threads, store, completion, seed, limits, spill, fail_transfer (counted over all passes),
 /// abort and progress (of each pass).
 ///
-/// Errors, in result.status: kBadParameter (options as of render_frame, only_tile, data that does not fit the store, a
+/// Errors, in result.status: kBadParameter (options as of render_frame, only_tiles, data that does not fit the store, a
 /// count that is not in memory or above its bound), kAborted (by the options, between two items, or by a shortage of
 /// the host), kIncompleteFrame (the kernel left items unclaimed), those of kernels and of broken rules. They do not
 /// depend on the number of threads. An exception of options.progress leaves this call once all threads have ended.

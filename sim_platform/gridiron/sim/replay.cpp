@@ -9,7 +9,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace gridiron::sim {
@@ -138,6 +141,7 @@ struct Core {
   // Program.
   Phase phase = Phase::kPrologue;
   TraceReader steps;
+  TileTrace arrived;                 ///< whose steps these are, where traces come one after another
   const TraceEvent* step = nullptr;  ///< that is taken next; null after the last one
   std::uint32_t tile_id = kNoTile;
   std::uint32_t ordinal = 0;      ///< of the tile: how many this core has had before it
@@ -169,10 +173,17 @@ struct Core {
   std::size_t tile_span = 0;
 };
 
+/// Traces by tile that have come and not been taken.
+using ArrivingTraces = std::vector<std::optional<TileTrace>>;
+
 class Replay {
  public:
-  Replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options)
+  /// @param arriving  where tiles' traces are put as they come; null: they are those of `trace`.
+  Replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options,
+         ArrivingTraces* arriving = nullptr)
       : trace_(trace),
+        arriving_(arriving),
+        tile_count_(arriving != nullptr ? arriving->size() : trace.tiles.size()),
         machine_(machine),
         constants_(machine, *trace.engine),
         output_depth_(std::clamp(trace.output_depth, 1u, std::uint32_t{kOutputTagCount})),
@@ -183,15 +194,17 @@ class Replay {
     for (std::uint32_t i = 0; i < count; ++i) cores_.emplace_back(constants_);
   }
 
-  FrameTiming run() {
+  void begin() {
     for (Core& core : cores_) {
       begin_steps(core, trace_.prologue);
       advance(core);
     }
+  }
+  /// Until the end, or until the trace of the next tile has to come.
+  void go_on() {
     // An event never causes an earlier one, so the earliest one is always safe to take.
     while (take_earliest_event()) {
     }
-    return result();
   }
 
   /// Of the first core, alone: takes all steps, and what they wait for.
@@ -206,8 +219,38 @@ class Replay {
   void claim_alone() { cores_.front().now += constants_.claim; }
   [[nodiscard]] Ticks now_alone() const { return cores_.front().now; }
 
+  FrameTiming result() {
+    Ticks end = 0;
+    for (const Core& core : cores_) end = std::max(end, core.now);
+
+    FrameTiming frame;
+    frame.engine = trace_.engine;
+    frame.frame_cycles = cycles_from_ticks(end);
+    frame.seconds = machine_.clock_hz > 0 ? frame.frame_cycles / machine_.clock_hz : 0;
+    frame.channel_busy_cycles = cycles_from_ticks(channel_busy_);
+    for (Core& core : cores_) {
+      CoreTiming& timing = core.timing;
+      timing.init_cycles = cycles_from_ticks(core.init);
+      timing.compute_cycles = cycles_from_ticks(core.compute);
+      timing.idle_cycles = cycles_from_ticks(core.idle + (end - core.now));
+      timing.end_idle_cycles = cycles_from_ticks(end - core.now);
+      timing.longest_tile_cycles = cycles_from_ticks(core.longest_tile);
+      for (std::size_t level = 0; level < kWaitLevelCount; ++level) {
+        timing.dma_wait_cycles[level] = cycles_from_ticks(core.waits[level]);
+      }
+      for (std::size_t stage = 0; stage < kStageCount; ++stage) {
+        timing.stages[stage].compute_cycles = cycles_from_ticks(core.stage_compute[stage]);
+        timing.stages[stage].wait_cycles = cycles_from_ticks(core.stage_waits[stage]);
+      }
+      frame.cores.push_back(timing);
+      frame.timeline.insert(frame.timeline.end(), core.timeline.begin(), core.timeline.end());
+    }
+    return frame;
+  }
+
  private:
-  /// Handles the earliest claim or line request; ties: claims first, then by core. @returns false if none is left.
+  /// Handles the earliest claim or line request; ties: claims first, then by core. @returns false if none is left, or
+  /// the earliest is the claim of a tile whose trace has not come.
   bool take_earliest_event() {
     Core* claimer = nullptr;
     Core* requester = nullptr;
@@ -224,6 +267,7 @@ class Replay {
       }
     }
     if (claimer != nullptr && claim_time <= request_time) {
+      if (!has_come(next_tile_of(*claimer))) return false;
       grant_claim(*claimer);
     } else if (requester != nullptr) {
       grant_line(*requester);
@@ -239,10 +283,12 @@ class Replay {
     core.idle += constants_.claim;
     core.ordinal = core.timing.tiles;
     core.stage = Stage::kPrimary;
-    if (const TileTrace* const tile = next_tile_of(core); tile != nullptr) {
+    if (const std::size_t tile = next_tile_of(core); tile != tile_count_) {
+      ++(core_of_tile_.empty() ? next_tile_ : core.next_own_tile);
       core.phase = Phase::kTile;
-      begin_steps(core, *tile);
-      core.tile_id = tile->tile_id;
+      const TileTrace& trace = take_trace(core, tile);
+      begin_steps(core, trace);
+      core.tile_id = trace.tile_id;
       core.tile_begin = core.now;
       ++core.timing.tiles;
       if (with_timeline_) {
@@ -257,21 +303,29 @@ class Replay {
     advance(core);
   }
 
-  /// @returns null if the core gets no more tiles.
-  const TileTrace* next_tile_of(Core& core) {
-    const std::size_t count = trace_.tiles.size();
+  /// @returns the place of the tile that the core's next claim gets; tile_count_ if it gets no more.
+  std::size_t next_tile_of(Core& core) const {
     if (core_of_tile_.empty()) {
-      if (next_tile_ == count) return nullptr;
-      const std::size_t claim = next_tile_++;
-      if (!trace_.is_middle_out) return &trace_.tiles[claim];
-      return &trace_.tiles[middle_out(static_cast<std::uint32_t>(claim), static_cast<std::uint32_t>(count))];
+      if (next_tile_ == tile_count_ || !trace_.is_middle_out) return next_tile_;
+      return middle_out(static_cast<std::uint32_t>(next_tile_), static_cast<std::uint32_t>(tile_count_));
     }
     const auto index = static_cast<std::uint32_t>(&core - cores_.data());
-    while (core.next_own_tile < count) {
-      const std::size_t tile = core.next_own_tile++;
-      if (tile < core_of_tile_.size() && core_of_tile_[tile] == index) return &trace_.tiles[tile];
+    for (; core.next_own_tile < tile_count_; ++core.next_own_tile) {
+      const std::size_t tile = core.next_own_tile;
+      if (tile < core_of_tile_.size() && core_of_tile_[tile] == index) return tile;
     }
-    return nullptr;
+    return tile_count_;
+  }
+
+  [[nodiscard]] bool has_come(std::size_t tile) const {
+    return arriving_ == nullptr || tile == tile_count_ || (*arriving_)[tile].has_value();
+  }
+
+  const TileTrace& take_trace(Core& core, std::size_t tile) {
+    if (arriving_ == nullptr) return trace_.tiles[tile];
+    core.arrived = std::move(*(*arriving_)[tile]);
+    (*arriving_)[tile].reset();
+    return core.arrived;
   }
 
   void grant_line(Core& core) {
@@ -478,36 +532,9 @@ class Replay {
             .end_cycles = cycles_from_ticks(end)};
   }
 
-  FrameTiming result() {
-    Ticks end = 0;
-    for (const Core& core : cores_) end = std::max(end, core.now);
-
-    FrameTiming frame;
-    frame.engine = trace_.engine;
-    frame.frame_cycles = cycles_from_ticks(end);
-    frame.seconds = machine_.clock_hz > 0 ? frame.frame_cycles / machine_.clock_hz : 0;
-    frame.channel_busy_cycles = cycles_from_ticks(channel_busy_);
-    for (Core& core : cores_) {
-      CoreTiming& timing = core.timing;
-      timing.init_cycles = cycles_from_ticks(core.init);
-      timing.compute_cycles = cycles_from_ticks(core.compute);
-      timing.idle_cycles = cycles_from_ticks(core.idle + (end - core.now));
-      timing.end_idle_cycles = cycles_from_ticks(end - core.now);
-      timing.longest_tile_cycles = cycles_from_ticks(core.longest_tile);
-      for (std::size_t level = 0; level < kWaitLevelCount; ++level) {
-        timing.dma_wait_cycles[level] = cycles_from_ticks(core.waits[level]);
-      }
-      for (std::size_t stage = 0; stage < kStageCount; ++stage) {
-        timing.stages[stage].compute_cycles = cycles_from_ticks(core.stage_compute[stage]);
-        timing.stages[stage].wait_cycles = cycles_from_ticks(core.stage_waits[stage]);
-      }
-      frame.cores.push_back(timing);
-      frame.timeline.insert(frame.timeline.end(), core.timeline.begin(), core.timeline.end());
-    }
-    return frame;
-  }
-
   const FrameTrace& trace_;
+  ArrivingTraces* const arriving_;
+  const std::size_t tile_count_;
   const MachineProfile& machine_;
   const Constants constants_;
   const std::uint32_t output_depth_;
@@ -522,7 +549,40 @@ class Replay {
 }  // namespace
 
 FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options) {
-  return Replay(trace, machine, options).run();
+  Replay replay(trace, machine, options);
+  replay.begin();
+  replay.go_on();
+  return replay.result();
+}
+
+struct FrameClock::State {
+  const MachineProfile machine;
+  const FrameTrace frame;
+  ArrivingTraces arriving;
+  Replay replay;
+
+  State(FrameTrace of, std::uint32_t tile_count, const MachineProfile& on, const ReplayOptions& options)
+      : machine(on), frame(std::move(of)), arriving(tile_count), replay(frame, machine, options, &arriving) {}
+};
+
+FrameClock::FrameClock(FrameTrace frame, std::uint32_t tile_count, const MachineProfile& machine,
+                       const ReplayOptions& options)
+    : state_(std::make_unique<State>(std::move(frame), tile_count, machine, options)) {
+  state_->replay.begin();
+}
+FrameClock::~FrameClock() = default;
+
+void FrameClock::take(TileTrace trace) {
+  const std::uint32_t tile = trace.tile_id;
+  state_->arriving[tile] = std::move(trace);
+  state_->replay.go_on();
+}
+std::size_t FrameClock::waiting_count() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(state_->arriving, [](const std::optional<TileTrace>& trace) { return trace.has_value(); }));
+}
+FrameTiming FrameClock::finish() {
+  return state_->replay.result();
 }
 
 double rounded_cycles(double cycles) {

@@ -104,6 +104,30 @@ struct ReplayOptions {
 /// core_count; memory: the steps of one tile a core, unpacked, about 2 bytes a step.
 [[nodiscard]] FrameTiming replay(const FrameTrace& trace, const MachineProfile& machine, const ReplayOptions& options);
 
+/// A replay of one frame whose traces come one after another, in any order. A trace that comes before its turn waits;
+/// each core has one more until it has taken its steps.
+class FrameClock {
+ public:
+  /// @param frame       prologue, epilogue and what else tiles have in common; its own tiles are not looked at.
+  /// @param tile_count  that cores claim.
+  /// @param options     core_of_tile is borrowed until finish().
+  FrameClock(FrameTrace frame, std::uint32_t tile_count, const MachineProfile& machine, const ReplayOptions& options);
+  ~FrameClock();
+  FrameClock(const FrameClock&) = delete;
+  FrameClock& operator=(const FrameClock&) = delete;
+
+  /// Takes the trace of tile trace.tile_id, below tile_count and not taken before, and goes on as far as possible.
+  void take(TileTrace trace);
+  /// @returns traces that wait for those of earlier claims.
+  [[nodiscard]] std::size_t waiting_count() const;
+  /// @returns what replay() does of all traces. Precondition: all have been taken.
+  [[nodiscard]] FrameTiming finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 /// @returns a time of a profile as the replay takes it: in whole 1/1024 of a cycle, within its limits.
 [[nodiscard]] double rounded_cycles(double cycles);
 

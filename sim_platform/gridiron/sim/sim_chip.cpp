@@ -222,10 +222,11 @@ struct RecordReader {
   const LayoutGroup group = group_of(layout);
   if (!are_limits_valid(options.limits) || options.threads == 0 ||
       !is_spill_valid(memory, options.spill, options.threads, shape.writable) ||
-      (options.only_tile && *options.only_tile >= shape.tile_count)) {
+      !are_tiles_valid(options.only_tiles, shape.tile_count)) {
     return refuse(Status::kBadParameter);
   }
-  options.threads = std::min(options.threads, options.only_tile ? 1 : shape.tile_count);  // the others would find none
+  const auto given = static_cast<std::uint32_t>(options.only_tiles.size());
+  options.threads = std::min(options.threads, given != 0 ? given : shape.tile_count);  // the others would find none
 
   if (options.mode == Mode::kPlain) {
     const RenderEntry<PlainCore> entry = plain_entry(options, group);

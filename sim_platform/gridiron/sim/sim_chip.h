@@ -11,7 +11,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -88,7 +88,7 @@ struct ChipOptions {
   PlatformLimits limits{};          ///< of the simulated platform
   SpillMemory spill{};              ///< one slice a thread; looked at for frames with effects only
   std::uint64_t fail_transfer = 0;  ///< n > 0: the n-th transfer started (over all threads) fails; checked modes only
-  std::optional<std::uint32_t> only_tile{};                               ///< render this tile alone
+  std::span<const std::uint32_t> only_tiles{};  ///< render these tiles alone: rising, borrowed; empty: all
   const std::atomic<bool>* abort = nullptr;                               ///< stop between tiles when it becomes true
   std::function<void(std::uint32_t done, std::uint32_t total)> progress{};  ///< called from any thread, serialised
 };
@@ -115,7 +115,7 @@ struct ChipResult {
   std::uint32_t failed_core = 0, failed_tile = 0;  ///< meaningful when status is not kOk; lowest tile that failed
   std::vector<Violation> violations;  ///< of the failed tile
   WorkTotals work{};            ///< over all tiles; the same for any number of threads
-  FrameTrace trace;             ///< Mode::kChecked only
+  FrameTrace trace;             ///< Mode::kChecked only; of options.only_tiles, in their order
   std::uint64_t transfers = 0;  ///< gets + puts issued
 };
 
@@ -123,9 +123,9 @@ struct ChipResult {
 ///
 /// Errors: kBadFrame (the record, or a part of memory that it names, does not exist), kUnsupportedFrame (is_built
 /// rejects store, tile width, packet width, shading, mode and lanes, or this host cannot run it), kBadParameter (limits
-/// of no possible platform, a tile outside of the frame, no threads, spill memory that is misaligned, not allocated or
-/// part of the picture), kAborted (by the options, or by a shortage of the host, which the result names), and the
-/// errors of the kernel or of a broken rule. If several tiles fail, the lowest one is reported with its violations, for
+/// of no possible platform, tiles outside of the frame or not rising, no threads, spill memory that is misaligned, not
+/// allocated or part of the picture), kAborted (by the options, or by a shortage of the host, which the result names),
+/// and the errors of the kernel or of a broken rule. If several tiles fail, the lowest one is reported with its violations, for
 /// any number of threads. An exception of options.progress leaves this call once all threads have ended.
 [[nodiscard]] ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options);
 

@@ -68,7 +68,7 @@ using WorkTotals = std::array<std::uint64_t, kWorkKindCount>;
 struct FrameTrace {
   TileTrace prologue;             ///< before the first claim
   TileTrace epilogue;             ///< after the last tile
-  std::vector<TileTrace> tiles;   ///< index = tile_id; one entry if a single tile was rendered
+  std::vector<TileTrace> tiles;   ///< index = tile_id, where all were rendered
   std::uint32_t output_depth = 1; ///< rotation of the relative tags
   const EngineWork* engine = &kGridEngine;  ///< whose kinds of work these are; outlives the trace
   bool is_middle_out = false;  ///< whether cores claim in the order of middle_out(), not by rising number

@@ -10,6 +10,8 @@
 #include <gridiron/sim/item_source.h>
 
 #include <new>
+#include <numeric>
+#include <vector>
 
 #include "support/test_headers.h"
 
@@ -51,7 +53,9 @@ class DeviceCore {
     std::memset(arena_.get(), 0, job_.store_bytes);
     sim::PlainCore* claiming = nullptr;
     std::uint64_t told = 0;
-    sim::ItemSource source(first, end, nullptr, [&](std::uint32_t done, std::uint32_t) {
+    std::vector<std::uint32_t> own(end - first);
+    std::iota(own.begin(), own.end(), first);
+    sim::ItemSource source(0, own, nullptr, [&](std::uint32_t done, std::uint32_t) {
       const std::uint32_t tile = first + done - 1;
       tiles[tile] = {index_, static_cast<std::uint32_t>(claiming->transfers() - told), 1 + std::uint64_t{tile}};
       told = claiming->transfers();

@@ -39,16 +39,16 @@ sim::ChipOptions options_of(const FrameMemory& frame, const RenderPlan& plan) {
 
 sim::ChipResult render_on_chip(FrameMemory& frame, const RenderPlan& plan,
                                std::function<void(std::uint32_t done, std::uint32_t total)> progress) {
-  sim::ChipOptions options = options_of(frame, plan);
-  options.only_tile = chosen_tile(plan, frame.record);
-  options.progress = std::move(progress);
-  return run_on_chip(frame.memory, frame.record_address, std::move(options), plan.scene.input);
+  const std::optional<std::uint32_t> tile = chosen_tile(plan, frame.record);
+  const std::span<const std::uint32_t> all;
+  return render_tiles_on_chip(frame, plan, tile ? std::span(&*tile, 1) : all, std::move(progress));
 }
 
-sim::ChipResult render_tile(FrameMemory& frame, const RenderPlan& plan, std::uint32_t tile) {
+sim::ChipResult render_tiles_on_chip(FrameMemory& frame, const RenderPlan& plan, std::span<const std::uint32_t> tiles,
+                                     std::function<void(std::uint32_t done, std::uint32_t total)> progress) {
   sim::ChipOptions options = options_of(frame, plan);
-  options.threads = 1;
-  options.only_tile = tile;
+  options.only_tiles = tiles;
+  options.progress = std::move(progress);
   return run_on_chip(frame.memory, frame.record_address, std::move(options), plan.scene.input);
 }
 

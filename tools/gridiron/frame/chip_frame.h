@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 
 #include "frame_memory.h"
 
@@ -17,9 +18,10 @@ namespace gridiron::tool {
 [[nodiscard]] sim::ChipResult render_on_chip(FrameMemory& frame, const RenderPlan& plan,
                                              std::function<void(std::uint32_t done, std::uint32_t total)> progress);
 
-/// The same of one tile, on the calling thread; any number of threads at once, but where the frame has memory for
-/// waiting rays, of which all would take the first core's.
-[[nodiscard]] sim::ChipResult render_tile(FrameMemory& frame, const RenderPlan& plan, std::uint32_t tile);
+/// The same of some tiles. @param tiles  rising numbers; RenderPlan::tile is not looked at.
+[[nodiscard]] sim::ChipResult render_tiles_on_chip(
+    FrameMemory& frame, const RenderPlan& plan, std::span<const std::uint32_t> tiles,
+    std::function<void(std::uint32_t done, std::uint32_t total)> progress);
 
 /// Renders the frame whose FrameRecord lies at `frame`; signals end it between two tiles.
 /// @param input  source of the frame, for messages.

@@ -1,25 +1,22 @@
 // Divided frame. SPDX-License-Identifier: Apache-2.0
 #include "divided_frame.h"
 
-#include <gridiron/sim/host_workers.h>
+#include <gridiron/platform/tile_order.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
-#include <exception>
-#include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/failure.h"
 #include "base/ranks.h"
+#include "base/stopwatch.h"
 #include "base/value_bytes.h"
 #include "chip_frame.h"
 
 namespace gridiron::tool {
 namespace {
-
-constexpr std::size_t kMessageBytes = std::size_t{4} << 20;
 
 // Parts of output planes, which hold whole tiles one after another.
 class Planes {
@@ -46,139 +43,195 @@ class Planes {
   std::size_t tile_bytes_;
 };
 
-// The tiles of this rank, and on rank 0 those of all. Calls are serialised.
+// The traces of a frame on rank 0. They are kept, or replayed as they come.
+class Traces {
+ public:
+  Traces(const RenderPlan& plan, const sim::ReplayOptions* replay, std::uint32_t tile_count)
+      : plan_(plan), replay_(replay), tile_count_(tile_count) {}
+
+  [[nodiscard]] bool has_head() const { return has_head_; }
+
+  // What all tiles have in common, before any of them.
+  void take_head(sim::FrameTrace& trace) {
+    has_head_ = true;
+    trace_.prologue = std::move(trace.prologue);
+    trace_.epilogue = std::move(trace.epilogue);
+    trace_.output_depth = trace.output_depth;
+    trace_.engine = trace.engine;
+    trace_.is_middle_out = trace.is_middle_out;
+    bytes_ = trace_.packed_bytes();
+    if (replay_ != nullptr) {
+      clock_.emplace(trace_, tile_count_, *plan_.scene.machine, *replay_);
+    } else {
+      trace_.tiles.resize(tile_count_);
+    }
+  }
+
+  void take_tile(sim::TileTrace trace) {
+    bytes_ += trace.packed.size();
+    if (clock_) {
+      clock_->take(std::move(trace));
+    } else {
+      trace_.tiles[trace.tile_id] = std::move(trace);
+    }
+  }
+
+  void finish(DividedFrame& frame) {
+    frame.trace_bytes = bytes_;
+    if (clock_) frame.timing = clock_->finish();
+    frame.chip.trace = std::move(trace_);
+  }
+
+ private:
+  const RenderPlan& plan_;
+  const sim::ReplayOptions* replay_;
+  std::uint32_t tile_count_;
+  bool has_head_ = false;
+  sim::FrameTrace trace_;
+  std::uint64_t bytes_ = 0;
+  std::optional<sim::FrameClock> clock_;
+};
+
+// The tiles of this rank, and on rank 0 those of all.
 class Division {
  public:
   using ProgressCall = std::function<void(std::uint32_t done, std::uint32_t total)>;
 
-  Division(const FrameMemory& frame, const RenderPlan& plan, const ProgressCall& progress)
-      : planes_(frame),
+  Division(FrameMemory& frame, const RenderPlan& plan, const sim::ReplayOptions* replay, const ProgressCall& progress)
+      : frame_(frame),
+        plan_(plan),
+        planes_(frame),
         progress_(progress),
         tile_count_(frame.record.tiles_x * frame.record.tiles_y),
-        has_trace_(plan.mode != sim::Mode::kPlain) {
-    if (ranks().is_first() && has_trace_) whole_.trace.tiles.resize(tile_count_);
-  }
+        has_trace_(plan.mode != sim::Mode::kPlain),
+        traces_(plan, replay, tile_count_) {}
 
-  [[nodiscard]] std::uint32_t own_count() const { return static_cast<std::uint32_t>(ranks().share_of(tile_count_)); }
-  [[nodiscard]] static std::uint32_t own_tile(std::uint32_t k) { return k * ranks().count() + ranks().rank(); }
-
-  void take_own(std::uint32_t tile, sim::ChipResult result) {
-    if (ranks().is_first()) {
-      add_work(result.work);
-      if (tile == 0) take_head(result.trace);
-      if (has_trace_) whole_.trace.tiles[tile] = std::move(result.trace.tiles.front());
-      ++done_;
-      take_arrived();
-      progress_(done_, tile_count_);
-      return;
+  // Renders the own tiles in the order of claims, so that traces come in the order in which a replay takes them.
+  void render_own() {
+    const auto own_count = static_cast<std::uint32_t>(ranks().share_of(tile_count_));
+    std::uint32_t at_once = plan_.threads;
+    std::vector<std::uint32_t> tiles;
+    for (std::uint32_t begin = 0; begin < own_count; begin += static_cast<std::uint32_t>(tiles.size())) {
+      tiles.clear();
+      for (std::uint32_t k = begin; k < std::min(own_count, begin + at_once); ++k) {
+        tiles.push_back(tile_of_claim(k * ranks().count() + ranks().rank()));
+      }
+      std::ranges::sort(tiles);
+      const Stopwatch stopwatch;
+      sim::ChipResult part = render_tiles_on_chip(frame_, plan_, tiles, [this](std::uint32_t done, std::uint32_t) {
+        ranks().attend();
+        if (!ranks().is_first()) return;
+        take_arrived();
+        progress_(done_ + done, tile_count_);
+      });
+      at_once = tiles_at_once(static_cast<double>(tiles.size()) / stopwatch.seconds());
+      if (ranks().is_first()) {
+        take_own(std::move(part), static_cast<std::uint32_t>(tiles.size()));
+      } else {
+        tell(part, tiles);
+      }
     }
-    tiles_.add(tile);
-    planes_.add_tile(tiles_, tile);
-    if (has_trace_) tiles_.add(result.trace.tiles.front().packed);
-    ++told_count_;
-    add_work(result.work);
-    ranks().attend();
-    if (tiles_.size() >= kMessageBytes) tell();
   }
 
   // @returns the whole frame, on rank 0.
-  [[nodiscard]] sim::ChipResult finish() {
-    if (!ranks().is_first() && told_count_ > 0) tell();
+  [[nodiscard]] DividedFrame finish() {
     while (ranks().is_first() && done_ < tile_count_) {
-      const RankMessage message = ranks().wait_message();
-      take_message(message.bytes);
+      take_message(ranks().wait_message().bytes);
       progress_(done_, tile_count_);
     }
     // No message of another frame comes before all of this have been taken.
     Bytes nothing;
     ranks().broadcast(nothing);
+    if (ranks().is_first()) traces_.finish(whole_);
     return std::move(whole_);
   }
 
  private:
+  // At the end of a part threads wait for the last: a part is several tiles a thread.
+  [[nodiscard]] std::uint32_t tiles_at_once(double tiles_per_second) const {
+    const double least = std::min(4.0 * plan_.threads, double{kTilesAtOnce});
+    return static_cast<std::uint32_t>(std::clamp(kSecondsAtOnce * tiles_per_second, least, double{kTilesAtOnce}));
+  }
+
+  [[nodiscard]] std::uint32_t tile_of_claim(std::uint32_t claim) const {
+    return plan_.engine == EngineId::kTree ? middle_out(claim, tile_count_) : claim;
+  }
+
   void add_work(const sim::WorkTotals& work) {
-    for (std::size_t kind = 0; kind < work.size(); ++kind) whole_.work[kind] += work[kind];
+    for (std::size_t kind = 0; kind < work.size(); ++kind) whole_.chip.work[kind] += work[kind];
   }
 
-  // What all tiles of a frame have in common.
-  void take_head(sim::FrameTrace& trace) {
-    whole_.trace.prologue = std::move(trace.prologue);
-    whole_.trace.epilogue = std::move(trace.epilogue);
-    whole_.trace.output_depth = trace.output_depth;
-    whole_.trace.engine = trace.engine;
-    whole_.trace.is_middle_out = trace.is_middle_out;
-  }
-
-  void tell() {
-    ByteWriter message;
-    message.add(std::exchange(told_count_, 0u));
-    message.add(std::exchange(whole_.work, {}));
-    message.add(tiles_.take());
-    ranks().tell_first(message.take());
+  void take_own(sim::ChipResult part, std::uint32_t count) {
+    add_work(part.work);
+    if (!traces_.has_head()) traces_.take_head(part.trace);
+    if (has_trace_) {
+      for (sim::TileTrace& trace : part.trace.tiles) traces_.take_tile(std::move(trace));
+    }
+    done_ += count;
+    take_arrived();
+    progress_(done_, tile_count_);
   }
 
   void take_arrived() {
-    ranks().attend();
+    if (!traces_.has_head()) return;  // it comes from the own first tiles, and is the same on all ranks
     while (const std::optional<RankMessage> message = ranks().poll()) take_message(message->bytes);
+  }
+
+  void tell(const sim::ChipResult& part, const std::vector<std::uint32_t>& tiles) const {
+    ByteWriter message;
+    message.add(static_cast<std::uint32_t>(tiles.size()));
+    message.add(part.work);
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      message.add(tiles[i]);
+      planes_.add_tile(message, tiles[i]);
+      if (has_trace_) message.add(part.trace.tiles[i].packed);
+    }
+    ranks().tell_first(message.take());
   }
 
   void take_message(const Bytes& bytes) {
     ByteReader reader(bytes);
     const auto count = reader.take<std::uint32_t>();
     add_work(reader.take<sim::WorkTotals>());
-    ByteReader tiles(reader.take_bytes(reader.take<std::uint64_t>()));
     for (std::uint32_t i = 0; i < count; ++i) {
-      const auto tile = tiles.take<std::uint32_t>();
-      planes_.take_tile(tiles, tile);
+      const auto tile = reader.take<std::uint32_t>();
+      planes_.take_tile(reader, tile);
       if (!has_trace_) continue;
-      whole_.trace.tiles[tile].tile_id = tile;
-      tiles.take(whole_.trace.tiles[tile].packed);
+      sim::TileTrace trace{tile, {}};
+      reader.take(trace.packed);
+      traces_.take_tile(std::move(trace));
     }
     done_ += count;
   }
 
+  FrameMemory& frame_;
+  const RenderPlan& plan_;
   Planes planes_;
   const ProgressCall& progress_;
   std::uint32_t tile_count_;
   bool has_trace_;
-  sim::ChipResult whole_;         // on other ranks only the work that is not told yet
-  ByteWriter tiles_;              // not told yet
-  std::uint32_t told_count_ = 0;  // tiles in it
-  std::uint32_t done_ = 0;        // on rank 0
+  DividedFrame whole_;
+  Traces traces_;
+  std::uint32_t done_ = 0;  // on rank 0
 };
+
+// By this rank alone.
+DividedFrame render_alone(FrameMemory& frame, const RenderPlan& plan,
+                          const std::function<void(std::uint32_t done, std::uint32_t total)>& progress) {
+  DividedFrame whole;
+  whole.chip = render_on_chip(frame, plan, progress);
+  whole.trace_bytes = whole.chip.trace.packed_bytes();
+  return whole;
+}
 
 }  // namespace
 
-sim::ChipResult render_divided(FrameMemory& frame, const RenderPlan& plan,
-                               const std::function<void(std::uint32_t done, std::uint32_t total)>& progress) {
-  if (ranks().count() == 1) return render_on_chip(frame, plan, progress);
-  if (plan.tile) return ranks().is_first() ? render_on_chip(frame, plan, progress) : sim::ChipResult{};
-  Division division(frame, plan, progress);
-  const std::uint32_t count = division.own_count();
-  const std::uint32_t threads = frame.spill_bytes_per_core != 0 ? 1 : std::clamp(plan.threads, 1u, std::max(count, 1u));
-  std::atomic<std::uint32_t> next{0};
-  std::atomic<bool> stop{false};
-  std::mutex mutex;
-  std::exception_ptr error;
-  const auto render_tiles = [&](std::uint32_t) {
-    while (!stop) {
-      const std::uint32_t k = next++;
-      if (k >= count) return;
-      try {
-        const std::uint32_t tile = Division::own_tile(k);
-        sim::ChipResult result = render_tile(frame, plan, tile);
-        const std::lock_guard lock(mutex);
-        division.take_own(tile, std::move(result));
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (error == nullptr) error = std::current_exception();
-        stop = true;
-      }
-    }
-  };
-  const sim::WorkersEnd end = sim::run_workers(threads, 1, render_tiles, [&stop] { stop = true; });
-  if (end.error != nullptr) std::rethrow_exception(end.error);
-  if (error != nullptr) std::rethrow_exception(error);
+DividedFrame render_divided(FrameMemory& frame, const RenderPlan& plan, const sim::ReplayOptions* replay,
+                            const std::function<void(std::uint32_t done, std::uint32_t total)>& progress) {
+  if (ranks().count() == 1) return render_alone(frame, plan, progress);
+  if (plan.tile) return ranks().is_first() ? render_alone(frame, plan, progress) : DividedFrame{};
+  Division division(frame, plan, replay, progress);
+  division.render_own();
   return division.finish();
 }
 
