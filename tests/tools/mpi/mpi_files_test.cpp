@@ -26,6 +26,12 @@ TEST_F(MpiFiles, OfAPictureWithEffects) {
                               "OUT/r.json"});
 }
 
+// Two nodes of two ranks: the scene goes from the first to the second, and lies once on each.
+TEST_F(MpiFiles, OfTwoNodes) {
+  expect_same_files(folder_, {"render", kScenes + "/everything.nff", "--size", "70x40", "-o", "OUT/a.png", "--report",
+                              "OUT/r.json"}, {two_nodes_line(4)});
+}
+
 // Fewer tiles than ranks, a single tile of many, and a packed scene, which is not built.
 TEST_F(MpiFiles, OfFewTiles) {
   expect_same_files(folder_, {"render", "a.ply", "--size", "16x16", "-o", "OUT/a.png", "--report", "OUT/r.json"});

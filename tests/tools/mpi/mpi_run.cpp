@@ -9,6 +9,8 @@
 #define GRIDIRON_MPIEXEC ""
 #define GRIDIRON_MPI_PROGRAM ""
 #define GRIDIRON_MPI_OTHER ""
+#define GRIDIRON_MPI_TWO_NODES ""
+#define GRIDIRON_MPI_LARGE_MESSAGES ""
 #endif
 
 namespace gridiron::test {
@@ -67,6 +69,14 @@ std::string other_line(int ranks) {
   return "-n " + std::to_string(ranks) + " '" + GRIDIRON_MPI_OTHER + "'";
 }
 
+std::string two_nodes_line(int ranks) {
+  return mpirun_line(ranks, GRIDIRON_MPI_TWO_NODES);
+}
+
+std::string large_messages_line() {
+  return mpirun_line(2, GRIDIRON_MPI_LARGE_MESSAGES);
+}
+
 ProgramResult run_ranks(const TemporaryFolder& folder, int ranks, const Words& arguments) {
   return run_shell(folder.folder(), kAtMost + ranks_line(ranks) + joined(arguments, "OUT"));
 }
@@ -79,25 +89,30 @@ std::map<std::string, std::string> files_of(const fs::path& folder) {
   return files;
 }
 
-void expect_same_files(const TemporaryFolder& folder, const Words& arguments) {
+void expect_same_files(const TemporaryFolder& folder, const Words& arguments, const Words& lines) {
   SCOPED_TRACE(testing::PrintToString(arguments));
-  for (const char* out : {"alone", "ranks"}) {
+  const auto files_by = [&](const std::string& line, const char* out) {
     fs::remove_all(folder.path(out));
     fs::create_directory(folder.path(out));
-  }
-  const ProgramResult alone = run_shell(folder.folder(), "\"$GRIDIRON\"" + joined(arguments, "alone"));
-  ASSERT_EQ(alone.exit_code, 0) << alone.err;
-  const ProgramResult ranks = run_shell(folder.folder(), kAtMost + ranks_line(3) + joined(arguments, "ranks"));
-  ASSERT_EQ(ranks.exit_code, 0) << ranks.err;
-  const std::map<std::string, std::string> expected = files_of(folder.path("alone"));
-  const std::map<std::string, std::string> got = files_of(folder.path("ranks"));
-  Words names, got_names;
-  for (const auto& [name, bytes] : expected) names.push_back(name);
-  for (const auto& [name, bytes] : got) got_names.push_back(name);
-  ASSERT_EQ(got_names, names);
-  for (const auto& [name, bytes] : expected) {
-    if (name.starts_with("host_")) continue;
-    EXPECT_TRUE(comparable(name, got.at(name)) == comparable(name, bytes)) << name << " differs";
+    const ProgramResult result = run_shell(folder.folder(), line + joined(arguments, out));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return files_of(folder.path(out));
+  };
+  const auto names_of = [](const std::map<std::string, std::string>& files) {
+    Words names;
+    for (const auto& [name, bytes] : files) names.push_back(name);
+    return names;
+  };
+  const std::map<std::string, std::string> expected = files_by("\"$GRIDIRON\"", "alone");
+  ASSERT_FALSE(expected.empty());
+  for (const std::string& line : lines) {
+    SCOPED_TRACE(line);
+    const std::map<std::string, std::string> got = files_by(kAtMost + line, "ranks");
+    ASSERT_EQ(names_of(got), names_of(expected));
+    for (const auto& [name, bytes] : expected) {
+      if (name.starts_with("host_")) continue;
+      EXPECT_TRUE(comparable(name, got.at(name)) == comparable(name, bytes)) << name << " differs";
+    }
   }
 }
 
