@@ -239,7 +239,7 @@ TEST(CoreRunner, RefusesShapesAndLimitsThatMakeNoSense) {
   EXPECT_EQ(status_of([](ProgramBench& b) { b.shape.output_depth = 0; }), Status::kBadParameter);
   EXPECT_EQ(status_of([](ProgramBench& b) { b.shape.data_bytes = 0; }), Status::kBadParameter);
   EXPECT_EQ(status_of([](ProgramBench& b) { b.shape.data_bytes = b.shape.arena_bytes + 16; }), Status::kBadParameter);
-  constexpr std::uint32_t kNoSuchTile = 1;
+  static constexpr std::uint32_t kNoSuchTile = 1;
   EXPECT_EQ(status_of([](ProgramBench& b) { b.options.only_tiles = {&kNoSuchTile, 1}; }), Status::kBadParameter);
   EXPECT_EQ(status_of([](ProgramBench& b) { b.options.limits.congruence_bytes = 256; }), Status::kBadParameter);
   EXPECT_EQ(status_of([](ProgramBench& b) { b.options.limits.boundary_bytes = 3000; }), Status::kBadParameter);
