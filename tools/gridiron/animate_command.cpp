@@ -131,6 +131,7 @@ void Animation::render() {
   const auto take = [&](std::size_t i, const MadeFrame& made) {
     progress.wipe();
     write_frame(i, made);
+    std::fputs(made.notes.c_str(), stderr);
     tell_note(maker_->input_of(i), made.note);
     ++done;
   };

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/kept_notes.h"
 #include "files/command_files.h"
 #include "files/overdue_exit.h"
 #include "gridiron/program.h"
@@ -25,14 +26,12 @@ namespace {
 
 using namespace gridiron::tool;
 
-// Notes, progress and results of other ranks than 0 go nowhere. @returns standard error, for last words.
+// Results of other ranks than 0 go nowhere. @returns standard error, for last words.
 int silence() {
-  const int error = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   (void)::dup2(nowhere, STDOUT_FILENO);
-  (void)::dup2(nowhere, STDERR_FILENO);
   (void)::close(nowhere);
-  return error;
+  return keep_notes();
 }
 
 std::string joined(int count, const char* const* values) {

@@ -1,4 +1,7 @@
 // Three ranks write the files of one process, byte for byte. SPDX-License-Identifier: Apache-2.0
+#include <set>
+#include <sstream>
+
 #include "mpi_run.h"
 
 namespace gridiron::test {
@@ -53,6 +56,28 @@ TEST_F(MpiFiles, OfASeriesOfMeshes) {
     folder_.write_ply("in/m" + std::to_string(i) + ".ply", moved(make_sphere(8, 10, 1.0f), 1.0f, Vec3(float(i), 0, 0)));
   }
   expect_same_files(folder_, {"animate", "in", "-o", "OUT", "--size", "40x40"});
+}
+
+// What any rank says of its frames is printed, and what is said of the first frame alone once.
+TEST_F(MpiFiles, NotesAreThoseOfOneProcess) {
+  Words files;
+  for (int i = 0; i < 5; ++i) {
+    files.push_back("s" + std::to_string(i) + ".nff");
+    folder_.write(files.back(), "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 40 40\n"
+                                "l 4 4 4\nf 1 0 0 1 0 0 0 0\ns 0 0 0 1\np 3 0 0 0 1 1 1 2 2 2\n");
+  }
+  const auto lines_of = [](const std::string& text) {
+    std::multiset<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.insert(line);
+    return lines;
+  };
+  const Words words = Words{"animate"} + files + Words{"--size", "40x40", "--configuration", "grid", "-o"};
+  const ProgramResult alone = run(folder_, words + Words{"alone"});
+  const ProgramResult ranks = run_ranks(folder_, 3, words + Words{"ranks"});
+  ASSERT_EQ(ranks.exit_code, 0) << ranks.err;
+  EXPECT_GE(lines_of(alone.err).size(), 5u) << alone.err;
+  EXPECT_EQ(lines_of(ranks.err), lines_of(alone.err));
 }
 
 // What is complete stays, whichever frames those are.

@@ -20,6 +20,7 @@ struct MadeFrame {
   FrameFigures figures;
   std::vector<std::byte> png;
   std::optional<std::string> note{};  ///< that no pixel shows the scene
+  std::string notes{};                ///< of another rank, to be printed as they are
   std::string timeline{};             ///< if it was requested
 };
 

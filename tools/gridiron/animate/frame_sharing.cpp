@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/failure.h"
+#include "base/kept_notes.h"
 #include "base/ranks.h"
 #include "base/stopwatch.h"
 #include "base/value_bytes.h"
@@ -70,6 +71,7 @@ Bytes bytes_of_frame(std::size_t i, const MadeFrame& made) {
   writer.add(made.png);
   writer.add(made.note.has_value());
   if (made.note) writer.add(*made.note);
+  writer.add(made.notes);
   writer.add(made.timeline);
   return writer.take();
 }
@@ -80,6 +82,7 @@ MadeFrame take_frame(ByteReader& reader) {
   take_figures(reader, made.figures);
   reader.take(made.png);
   if (reader.take<bool>()) reader.take(made.note.emplace());
+  reader.take(made.notes);
   reader.take(made.timeline);
   return made;
 }
@@ -109,6 +112,7 @@ void render_frames_for_first(const AnimateRequest& request) {
   maker->prepare();
   const std::vector<std::size_t> numbers = share_frame_numbers({});
   if (!numbers.empty()) maker->begin();
+  (void)take_notes();  // so far rank 0 has said the same
   Stopwatch since_part;
   const auto tell_part = [&](double part) {
     all.attend();
@@ -118,7 +122,9 @@ void render_frames_for_first(const AnimateRequest& request) {
   };
   for (std::size_t k = all.rank(); k < numbers.size(); k += all.count()) {
     const std::size_t i = numbers[k];
-    all.tell_first(bytes_of_frame(i, maker->make(i, request.timeline && i == 0, tell_part)));
+    MadeFrame made = maker->make(i, request.timeline && i == 0, tell_part);
+    made.notes = take_notes();
+    all.tell_first(bytes_of_frame(i, made));
   }
 }
 

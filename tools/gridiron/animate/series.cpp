@@ -5,6 +5,7 @@
 
 #include "base/content_hash.h"
 #include "base/failure.h"
+#include "base/ranks.h"
 #include "files/command_files.h"
 #include "files/input_file.h"
 #include "files/interrupt.h"
@@ -79,7 +80,7 @@ class Series final : public FrameMaker {
   std::vector<SeriesFrame> frames_;
   std::optional<CountPair> size_;     // of all pictures
   std::optional<LookBounds> bounds_;  // of all frames, where they have a look: its ground stays where it is
-  bool has_told_ = false;
+  bool has_told_ = !ranks().is_first();  // what is said of the first frame alone
   std::optional<VertexOrder> vertex_order_;  // meshes of one topology have one
 };
 
