@@ -72,12 +72,21 @@ TEST_F(MpiFiles, NotesAreThoseOfOneProcess) {
     for (std::string line; std::getline(stream, line);) lines.insert(line);
     return lines;
   };
-  const Words words = Words{"animate"} + files + Words{"--size", "40x40", "--configuration", "grid", "-o"};
-  const ProgramResult alone = run(folder_, words + Words{"alone"});
-  const ProgramResult ranks = run_ranks(folder_, 3, words + Words{"ranks"});
-  ASSERT_EQ(ranks.exit_code, 0) << ranks.err;
-  EXPECT_GE(lines_of(alone.err).size(), 5u) << alone.err;
-  EXPECT_EQ(lines_of(ranks.err), lines_of(alone.err));
+  const auto expect_same_notes = [&](const Words& words, std::size_t notes) {
+    const ProgramResult alone = run(folder_, Words{"animate"} + words + Words{"-o", "alone"});
+    const ProgramResult ranks = run_ranks(folder_, 3, Words{"animate"} + words + Words{"-o", "ranks"});
+    ASSERT_EQ(ranks.exit_code, 0) << ranks.err;
+    EXPECT_EQ(lines_of(alone.err).size(), notes) << alone.err;
+    EXPECT_EQ(lines_of(ranks.err), lines_of(alone.err));
+  };
+  expect_same_notes(files + Words{"--size", "40x40"}, 5);
+  expect_same_notes({files.front(), "--size", "40x40", "--turntable", "5"}, 1);
+  Words meshes;
+  for (const char* name : {"b.ply", "c.ply", "d.ply", "e.ply"}) {
+    folder_.write(name, read_file(folder_.path("a.ply")));
+    meshes.emplace_back(name);
+  }
+  expect_same_notes(meshes + Words{"--size", "40x40", "--configuration", "grid", "--store", "64"}, 1);
 }
 
 // What is complete stays, whichever frames those are.
