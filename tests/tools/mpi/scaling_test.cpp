@@ -89,6 +89,28 @@ TEST(ScalingModel, RankZeroTakesPieces) {
   const Prediction at = predict(costs, kFree, 16);
   EXPECT_DOUBLE_EQ(at.seconds, 1 + 15 * 0.5);
   EXPECT_EQ(at.limit, "rank 0 takes pieces");
+  costs.own_take_seconds = 2;
+  EXPECT_DOUBLE_EQ(simulate(costs, kFree, 16), 3 + 15 * 0.5);
+  EXPECT_DOUBLE_EQ(simulate(costs, kFree, 1), 16 * 3);
+}
+
+TEST(ScalingModel, MessagesHoldPiecesUpToANumberOrATime) {
+  Costs costs = even(8, 1);
+  costs.take_seconds = 1;
+  const auto seconds = [&costs](double pieces, double most) {
+    costs.message_pieces = pieces;
+    costs.message_seconds = most;
+    return simulate(costs, kFree, 2);
+  };
+  EXPECT_DOUBLE_EQ(seconds(1, 0), 8);    // taken between own pieces and after them
+  EXPECT_DOUBLE_EQ(seconds(100, 0), 8);  // one message of four, at 4 s
+  costs.pieces.assign(2, {0, 0});
+  costs.pieces.resize(8, {1, 0});
+  for (std::size_t i = 0; i < 8; i += 2) costs.pieces[i].seconds = 0;  // rank 0 waits; rank 1 works 3 s
+  EXPECT_DOUBLE_EQ(seconds(1, 0), 4);    // the last comes at 3 s
+  EXPECT_DOUBLE_EQ(seconds(100, 0), 7);  // all come at 3 s
+  EXPECT_DOUBLE_EQ(seconds(2, 0), 5);    // two of them
+  EXPECT_DOUBLE_EQ(seconds(100, 2), 6);  // three at 2 s keep it busy until 5
 }
 
 TEST(ScalingModel, BroadcastIsATree) {

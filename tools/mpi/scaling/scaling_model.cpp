@@ -70,7 +70,8 @@ std::vector<Message> messages_of(const Costs& costs, std::uint32_t rank, std::ui
     gathered.work += costs.pieces[i].seconds;
     gathered.bytes += costs.pieces[i].bytes;
     ++gathered.pieces;
-    if (gathered.bytes >= costs.message_bytes || i + ranks >= costs.pieces.size()) {
+    const bool is_long = costs.message_seconds > 0 && gathered.work >= costs.message_seconds;
+    if (gathered.pieces >= costs.message_pieces || is_long || i + ranks >= costs.pieces.size()) {
       messages.push_back(std::exchange(gathered, {}));
     }
   }
@@ -92,7 +93,7 @@ class Gathering {
   // @returns when all pieces are there.
   double run() {
     for (std::size_t i = 0; i < costs_.pieces.size(); i += ranks_) {
-      now_ += costs_.pieces[i].seconds;
+      now_ += costs_.pieces[i].seconds + costs_.own_take_seconds;
       take_arrived();
     }
     while (!heads_.empty() || !arriving_.empty()) {
@@ -168,7 +169,8 @@ Costs read_costs(const std::string& file, const std::string& text) {
   Costs costs;
   const std::pair<std::string_view, double Costs::*> keys[] = {
       {"start_seconds", &Costs::start_seconds}, {"broadcast_bytes", &Costs::broadcast_bytes},
-      {"message_bytes", &Costs::message_bytes}, {"take_seconds", &Costs::take_seconds},
+      {"message_pieces", &Costs::message_pieces}, {"message_seconds", &Costs::message_seconds},
+      {"take_seconds", &Costs::take_seconds},   {"own_take_seconds", &Costs::own_take_seconds},
       {"end_seconds", &Costs::end_seconds},     {"spread_bytes", &Costs::spread_bytes},
   };
   std::set<std::string, std::less<>> seen;
@@ -232,14 +234,13 @@ Prediction predict(const Costs& costs, const Network& network, std::uint32_t ran
   changed.broadcast_bytes = changed.spread_bytes = 0;
   try_without("broadcast", changed, network);
   changed = costs;
-  changed.take_seconds = 0;
+  changed.take_seconds = changed.own_take_seconds = 0;
   try_without("rank 0 takes pieces", changed, network);
   changed = costs;
   changed.end_seconds = 0;
   try_without("end of rank 0", changed, network);
   changed = costs;
   for (Piece& piece : changed.pieces) piece.bytes *= 1e-9;
-  changed.message_bytes *= 1e-9;
   try_without("bandwidth", changed, network);
   try_without("latency", costs, {.latency_seconds = 0, .bytes_per_second = network.bytes_per_second});
   try_without(ranks >= costs.pieces.size() ? "too few pieces" : "uneven shares", evenly_divided(costs, ranks), network);
