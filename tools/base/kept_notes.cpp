@@ -26,7 +26,8 @@ std::string take_notes() {
   if (!are_kept) return "";
   std::string notes;
   char piece[4096];
-  for (::ssize_t count = 0; (count = ::pread(STDERR_FILENO, piece, sizeof piece, static_cast<::off_t>(notes.size()))) > 0;) {
+  for (::ssize_t count = 0;
+       (count = ::pread(STDERR_FILENO, piece, sizeof piece, static_cast<::off_t>(notes.size()))) > 0;) {
     notes.append(piece, static_cast<std::size_t>(count));
   }
   (void)!::ftruncate(STDERR_FILENO, 0);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -462,8 +463,8 @@ class Replay {
 
   bool take_wait(Core& core, const TraceEvent& event) {
     std::uint32_t tags = event.tags;
-    for (std::uint32_t relative = 0; relative < kTagCount; ++relative) {
-      if ((event.rotating_tags >> relative & 1u) != 0) tags |= 1u << rotated_tag(core, relative);
+    for (std::uint32_t left = event.rotating_tags; left != 0; left &= left - 1) {
+      tags |= 1u << rotated_tag(core, static_cast<std::uint32_t>(std::countr_zero(left)));
     }
     // Lines have their turns in the order of issue: once those of the last command have had theirs, all are known. The
     // command that is done last, of several the last issued, gives the wait its level.
@@ -471,8 +472,8 @@ class Replay {
     Ticks done = 0;
     std::uint64_t late_command = 0;
     std::uint32_t late_tag = 0;
-    for (std::uint32_t tag = 0; tag < kTagCount; ++tag) {
-      if ((tags >> tag & 1u) == 0) continue;
+    for (std::uint32_t left = tags; left != 0; left &= left - 1) {
+      const auto tag = static_cast<std::uint32_t>(std::countr_zero(left));
       const std::uint64_t command = core.last_of_tag[tag];
       last = std::max(last, command);
       if (core.done_of_tag[tag] < done || (core.done_of_tag[tag] == done && command < late_command)) continue;

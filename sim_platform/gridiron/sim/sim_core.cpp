@@ -7,6 +7,7 @@
 #include <gridiron/sim/trace_packing.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <iterator>
 #include <tuple>
@@ -176,8 +177,8 @@ Status SimCore::wait(TagMask tags) {
   }
 
   TraceEvent event{.kind = EventKind::kWait};
-  for (std::uint32_t tag = 0; tag < 32; ++tag) {
-    if ((tags.bits >> tag & 1) == 0) continue;
+  for (std::uint32_t left = tags.bits; left != 0; left &= left - 1) {
+    const auto tag = static_cast<std::uint32_t>(std::countr_zero(left));
     const auto [traced, rotating] = traced_tag(tag);
     (rotating ? event.rotating_tags : event.tags) |= 1u << traced;
   }
@@ -185,9 +186,9 @@ Status SimCore::wait(TagMask tags) {
 
   Status status = sticky_error_;
   const std::size_t slots = pending_.size();
-  const std::uint64_t choice = frame_->completion == Completion::kRandom ? next_random() : 0;
+  const std::size_t first = frame_->completion == Completion::kRandom ? next_random() % slots : 0;
   for (std::size_t i = 0; i < slots; ++i) {
-    Pending& pending = pending_[(i + choice) % slots];
+    Pending& pending = pending_[first + i < slots ? first + i : first + i - slots];
     if (!pending.in_use || (tags.bits >> pending.tag & 1) == 0) continue;
     const Status ended = complete(pending);
     if (status == Status::kOk) status = ended;
@@ -253,12 +254,18 @@ const TileTrace& SimCore::end_trace() {
 
 void SimCore::note_work(const std::uint32_t* counts, std::uint32_t count) {
   constexpr std::uint32_t kKindsAtOnce = 8;
+  // Of as many as a compiler compares without a loop or a call.
+  const auto are_equal = [](const std::uint32_t* a, const std::uint32_t* b) {
+    std::uint32_t difference = 0;
+    for (std::uint32_t i = 0; i < kKindsAtOnce; ++i) difference |= a[i] ^ b[i];
+    return difference == 0;
+  };
   std::uint32_t done = 0;
   const std::uint32_t known = std::min(count, kWorkKindCount);
   for (std::uint32_t first = 0; first < known; first += kKindsAtOnce) {
     const std::uint32_t end = std::min(first + kKindsAtOnce, known);
     // From one call to the next few kinds change.
-    if (std::equal(counts + first, counts + end, &last_counts_[first])) continue;
+    if (end - first == kKindsAtOnce && are_equal(counts + first, &last_counts_[first])) continue;
     for (std::uint32_t kind = first; kind < end; ++kind) {
       const std::uint32_t amount = counts[kind] - last_counts_[kind];
       if (amount == 0) continue;

@@ -111,6 +111,38 @@ TEST_F(MpiFiles, OfAnExperiment) {
                               "6000"});
 }
 
+// What the scaling model is made from: the calls of each rank, with the bytes of its messages.
+TEST_F(MpiFiles, OfCosts) {
+  const ProgramResult result =
+      run_ranks(folder_, 2, {"--costs", "costs", "render", "a.ply", "--size", "200x170", "-o", "a.png"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  std::map<std::string, std::vector<double>> bytes[2];  // by call
+  for (int rank = 0; rank < 2; ++rank) {
+    std::istringstream file(read_file(folder_.path("costs." + std::to_string(rank) + ".csv")));
+    std::string line;
+    std::getline(file, line);
+    EXPECT_EQ(line, "call,bytes,before_seconds,seconds");
+    double all_seconds = 0;
+    while (std::getline(file, line)) {
+      std::ranges::replace(line, ',', ' ');
+      std::istringstream words(line);
+      std::string call;
+      double sent = 0, before = -1, seconds = -1;
+      ASSERT_TRUE(words >> call >> sent >> before >> seconds) << line;
+      EXPECT_GE(std::min(before, seconds), 0.0) << line;
+      bytes[rank][call].push_back(sent);
+      all_seconds += before + seconds;
+    }
+    EXPECT_GT(all_seconds, 0.0);
+    EXPECT_EQ(bytes[rank]["end"].size(), 1u);
+    EXPECT_EQ(bytes[rank]["share"], bytes[0]["share"]);
+  }
+  std::vector<double> taken;
+  std::ranges::copy_if(bytes[0]["poll"], std::back_inserter(taken), [](double count) { return count > 0; });
+  EXPECT_FALSE(taken.empty());
+  EXPECT_EQ(taken, bytes[1]["tell"]);
+}
+
 TEST_F(MpiFiles, OtherCommandsAreThoseOfOneProcess) {
   const ProgramResult alone = run(folder_, {"info", "a.ply"});
   const ProgramResult ranks = run_ranks(folder_, 3, {"info", "a.ply"});

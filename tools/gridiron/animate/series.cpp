@@ -78,9 +78,9 @@ class Series final : public FrameMaker {
   const RenderRequest& request_;
   std::optional<ViewRequest> camera_;
   std::vector<SeriesFrame> frames_;
-  std::optional<CountPair> size_;     // of all pictures
-  std::optional<LookBounds> bounds_;  // of all frames, where they have a look: its ground stays where it is
-  bool has_told_ = !ranks().is_first();  // what is said of the first frame alone
+  std::optional<CountPair> size_;            // of all pictures
+  std::optional<LookBounds> bounds_;         // of all frames, where they have a look: its ground stays where it is
+  bool has_told_ = !ranks().is_first();      // what is said of the first frame alone
   std::optional<VertexOrder> vertex_order_;  // meshes of one topology have one
 };
 

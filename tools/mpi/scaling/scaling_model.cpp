@@ -168,10 +168,10 @@ Costs evenly_divided(Costs costs, std::uint32_t ranks) {
 Costs read_costs(const std::string& file, const std::string& text) {
   Costs costs;
   const std::pair<std::string_view, double Costs::*> keys[] = {
-      {"start_seconds", &Costs::start_seconds}, {"broadcast_bytes", &Costs::broadcast_bytes},
+      {"start_seconds", &Costs::start_seconds},   {"broadcast_bytes", &Costs::broadcast_bytes},
       {"message_pieces", &Costs::message_pieces}, {"message_seconds", &Costs::message_seconds},
-      {"take_seconds", &Costs::take_seconds},   {"own_take_seconds", &Costs::own_take_seconds},
-      {"end_seconds", &Costs::end_seconds},     {"spread_bytes", &Costs::spread_bytes},
+      {"take_seconds", &Costs::take_seconds},     {"own_take_seconds", &Costs::own_take_seconds},
+      {"end_seconds", &Costs::end_seconds},       {"spread_bytes", &Costs::spread_bytes},
   };
   std::set<std::string, std::less<>> seen;
   std::uint64_t line_number = 0;
