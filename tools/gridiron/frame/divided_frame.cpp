@@ -14,6 +14,7 @@
 #include "base/stopwatch.h"
 #include "base/value_bytes.h"
 #include "chip_frame.h"
+#include "replay_thread.h"
 
 namespace gridiron::tool {
 namespace {
@@ -61,7 +62,7 @@ class Traces {
     trace_.is_middle_out = trace.is_middle_out;
     bytes_ = trace_.packed_bytes();
     if (replay_ != nullptr) {
-      clock_.emplace(trace_, tile_count_, *plan_.scene.machine, *replay_);
+      replayed_.emplace(trace_, tile_count_, *plan_.scene.machine, *replay_, plan_.threads > 1);
     } else {
       trace_.tiles.resize(tile_count_);
     }
@@ -69,8 +70,8 @@ class Traces {
 
   void take_tile(sim::TileTrace trace) {
     bytes_ += trace.packed.size();
-    if (clock_) {
-      clock_->take(std::move(trace));
+    if (replayed_) {
+      replayed_->take(std::move(trace));
     } else {
       trace_.tiles[trace.tile_id] = std::move(trace);
     }
@@ -78,7 +79,7 @@ class Traces {
 
   void finish(DividedFrame& frame) {
     frame.trace_bytes = bytes_;
-    if (clock_) frame.timing = clock_->finish();
+    if (replayed_) frame.timing = replayed_->finish();
     frame.chip.trace = std::move(trace_);
   }
 
@@ -89,7 +90,7 @@ class Traces {
   bool has_head_ = false;
   sim::FrameTrace trace_;
   std::uint64_t bytes_ = 0;
-  std::optional<sim::FrameClock> clock_;
+  std::optional<ReplayThread> replayed_;
 };
 
 // The tiles of this rank, and on rank 0 those of all.
