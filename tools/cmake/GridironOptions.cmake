@@ -41,6 +41,15 @@ function(gridiron_use_png target)
   endif()
 endfunction()
 
+# gridiron_use_zlib(TARGET): the same with zlib alone, which every libpng brings.
+function(gridiron_use_zlib target)
+  if(GRIDIRON_HAS_PNG)
+    find_package(ZLIB REQUIRED)
+    target_compile_definitions(${target} PRIVATE GRIDIRON_HAS_PNG)
+    target_link_libraries(${target} PRIVATE ZLIB::ZLIB)
+  endif()
+endfunction()
+
 # gridiron_use_jpeg(TARGET): the same for libjpeg, GRIDIRON_HAS_JPEG.
 function(gridiron_use_jpeg target)
   if(GRIDIRON_HAS_JPEG)

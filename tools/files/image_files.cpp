@@ -49,8 +49,9 @@ std::vector<std::byte> encode_color_pfm(const Picture<std::uint32_t>& picture) {
   });
 }
 
-std::vector<std::byte> encode_picture(const Picture<std::uint32_t>& picture, const std::filesystem::path& path) {
-  return has_ending(path, ".pfm") ? encode_color_pfm(picture) : encode_png(picture);
+std::vector<std::byte> encode_picture(const Picture<std::uint32_t>& picture, const std::filesystem::path& path,
+                                      std::uint32_t threads) {
+  return has_ending(path, ".pfm") ? encode_color_pfm(picture) : encode_png(picture, threads);
 }
 
 }  // namespace gridiron::tool

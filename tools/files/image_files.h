@@ -17,9 +17,11 @@ struct Picture {
 };
 
 /// @param picture  RGBA8, 0xAABBGGRR in each word: bytes R, G, B, A.
-/// @returns the bytes of a PNG file, 8-bit RGBA, compressed if the build has libpng (GRIDIRON_WITH_PNG). Errors:
-/// Failure (kBadInput) with libpng's reason.
-[[nodiscard]] std::vector<std::byte> encode_png(const Picture<std::uint32_t>& picture);
+/// @param threads  of the host that share the work, the caller's included, or as many as it can start; the bytes are
+///                 the same for any number.
+/// @returns the bytes of a PNG file, 8-bit RGBA, compressed if the build has libpng (GRIDIRON_WITH_PNG). png_file.h
+/// encodes parts of a picture. Errors: std::bad_alloc; Failure (kBadInput) with zlib's reason.
+[[nodiscard]] std::vector<std::byte> encode_png(const Picture<std::uint32_t>& picture, std::uint32_t threads = 1);
 
 /// @returns the bytes of a PFM file: "Pf", little-endian floats, last row first as the format says.
 [[nodiscard]] std::vector<std::byte> encode_pfm(const Picture<float>& picture);
@@ -28,7 +30,8 @@ struct Picture {
 [[nodiscard]] std::vector<std::byte> encode_color_pfm(const Picture<std::uint32_t>& picture);
 
 /// @returns the bytes of a picture in the format of the path's ending: PFM for .pfm, PNG for all others.
+/// @param threads  as for encode_png().
 [[nodiscard]] std::vector<std::byte> encode_picture(const Picture<std::uint32_t>& picture,
-                                                    const std::filesystem::path& path);
+                                                    const std::filesystem::path& path, std::uint32_t threads = 1);
 
 }  // namespace gridiron::tool

@@ -272,7 +272,7 @@ void run_command(const RenderRequest& request) {
 
   AtomicFiles files;
   files.add(*outputs.picture, name_in_shortage(plan.scene.input, "encode its picture",
-                                               [&] { return encode_picture(color, *outputs.picture); }));
+                                               [&] { return encode_picture(color, *outputs.picture, plan.threads); }));
   if (outputs.depth) {
     files.add(*outputs.depth, encode_pfm(depth_picture(plane_words(frame, plan, frame.depth))));
   }

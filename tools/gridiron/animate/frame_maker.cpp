@@ -139,7 +139,7 @@ MadeFrame render_frame(FrameMemory& memory, const RenderPlan& plan, std::uint64_
   }
   const Picture<std::uint32_t> color = words_of_plane(memory.record, memory.color.bytes);
   made.figures.hash = image_hash(color.pixels);
-  made.png = encode_png(color);
+  made.png = encode_png(color, plan.threads);
   if (!plan.scene.quiet) made.note = unseen_note(memory, result, plan.mode);
   return made;
 }

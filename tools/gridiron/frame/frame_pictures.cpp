@@ -36,11 +36,15 @@ Picture<std::uint32_t> words_of_plane(const FrameRecord& frame, std::span<const 
   picture.width = tile ? std::min(frame.tile_width, frame.width - first_x) : frame.width;
   picture.height = tile ? std::min(frame.tile_width, frame.height - first_y) : frame.height;
   picture.pixels.resize(std::size_t{picture.width} * picture.height);
-  std::uint32_t* word = picture.pixels.data();
+  std::uint32_t* words = picture.pixels.data();
+  const std::uint32_t end_x = first_x + picture.width;
   for (std::uint32_t y = first_y; y < first_y + picture.height; ++y) {
-    for (std::uint32_t x = first_x; x < first_x + picture.width; ++x, ++word) {
+    // A row of a tile lies in one piece. first_x is a tile's edge.
+    for (std::uint32_t x = first_x; x < end_x; x += frame.tile_width) {
+      const std::uint32_t count = std::min(frame.tile_width, end_x - x);
       const std::uint64_t index = output_plane_index(frame.width, frame.tile_width, x, y);
-      std::memcpy(word, plane.data() + index * sizeof *word, sizeof *word);
+      std::memcpy(words, plane.data() + index * sizeof *words, count * sizeof *words);
+      words += count;
     }
   }
   return picture;
