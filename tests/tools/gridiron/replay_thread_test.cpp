@@ -11,7 +11,7 @@ sim::FrameTrace make_frame(std::uint32_t tiles) {
   sim::FrameTrace frame;
   sim::TraceWriter writer;
   for (std::uint32_t tile = 0; tile < tiles; ++tile) {
-    const sim::WorkAmount work{sim::WorkId(0), 1 + tile * 7 % 50};
+    const sim::WorkAmount work{WorkId(0), 1 + tile * 7 % 50};
     for (int i = 0; i < 20; ++i) {
       writer.add({.kind = sim::EventKind::kGet, .tag = 3, .bytes = 256, .address = tile * 4096});
       writer.add({.kind = sim::EventKind::kWork, .work = {&work, 1}});
