@@ -9,13 +9,17 @@
 namespace gridiron::tool {
 namespace {
 
+constexpr char kToItself[] = "one process sends itself a message";
+
 class SingleRank final : public Ranks {
  public:
   [[nodiscard]] std::uint32_t rank() const override { return 0; }
   [[nodiscard]] std::uint32_t count() const override { return 1; }
-  void tell_first(Bytes) override { throw Failure(ExitCode::kCheckFailed, "one process sends itself a message"); }
+  void tell_first(Bytes) override { throw Failure(ExitCode::kCheckFailed, kToItself); }
   [[nodiscard]] bool has_told() override { return true; }
   [[nodiscard]] std::optional<RankMessage> poll() override { return std::nullopt; }
+  void tell(std::uint32_t, Bytes) override { throw Failure(ExitCode::kCheckFailed, kToItself); }
+  [[nodiscard]] Bytes hear() override { throw Failure(ExitCode::kCheckFailed, kToItself); }
   void attend() override {}
   void broadcast(Bytes&) override {}
   void share_bytes(std::span<std::byte>, const std::function<void(std::uint64_t, std::span<std::byte>)>&) override {}

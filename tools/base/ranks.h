@@ -48,6 +48,10 @@ class Ranks {
   [[nodiscard]] virtual bool has_told() = 0;
   /// Of rank 0: @returns a message that has arrived, of any rank.
   [[nodiscard]] virtual std::optional<RankMessage> poll() = 0;
+  /// Of rank 0: sends a message to another rank. Waits until it has left, so that one at most is kept.
+  virtual void tell(std::uint32_t rank, Bytes message) = 0;
+  /// Of another rank than 0: @returns the next message of rank 0, once it has arrived.
+  [[nodiscard]] virtual Bytes hear() = 0;
   /// Moves messages on and looks for failures of other ranks. Called now and then during long work; cheap.
   virtual void attend() = 0;
   /// Gives all ranks the bytes of rank 0. All call it; it returns once this rank has them.

@@ -245,22 +245,32 @@ class Deflater {
 #endif
 
 template <class EncodeBand>
-std::vector<std::byte> encode_bands(const Picture<std::uint32_t>& picture, std::uint32_t threads,
-                                    EncodeBand encode_band) {
-  std::vector<PngBand> bands(png_band_count(picture.width, picture.height));
-  const auto count = static_cast<std::uint32_t>(bands.size());
-  std::atomic<std::uint32_t> next{0};
+std::vector<PngBand> encode_bands(std::size_t count, std::uint32_t threads,
+                                  const std::function<PngRows(std::size_t band)>& rows_of, EncodeBand encode_band) {
+  std::vector<PngBand> bands(count);
+  std::atomic<std::size_t> next{0};
   std::atomic<bool> stop{false};
   const auto encode = [&](std::uint32_t) {
     while (!stop) {
-      const std::uint32_t band = next++;
+      const std::size_t band = next++;
       if (band >= count) return;
-      bands[band] = encode_band(png_rows_of_band(picture, band));
+      bands[band] = encode_band(rows_of(band));
     }
   };
-  const sim::WorkersEnd end = sim::run_workers(std::clamp(threads, 1u, count), 1, encode, [&stop] { stop = true; });
+  const auto workers = static_cast<std::uint32_t>(std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(count, 1)));
+  const sim::WorkersEnd end = sim::run_workers(workers, 1, encode, [&stop] { stop = true; });
   if (end.error != nullptr) std::rethrow_exception(end.error);
-  return join_png_bands(picture.width, picture.height, std::move(bands));
+  return bands;
+}
+
+template <class EncodeBand>
+std::vector<std::byte> encode_whole(const Picture<std::uint32_t>& picture, std::uint32_t threads,
+                                    EncodeBand encode_band) {
+  const auto rows_of = [&picture](std::size_t band) {
+    return png_rows_of_band(picture, static_cast<std::uint32_t>(band));
+  };
+  const std::uint32_t count = png_band_count(picture.width, picture.height);
+  return join_png_bands(picture.width, picture.height, encode_bands(count, threads, rows_of, encode_band));
 }
 
 }  // namespace
@@ -373,12 +383,17 @@ std::vector<std::byte> join_png_bands(std::uint32_t width, std::uint32_t height,
   return file;
 }
 
+std::vector<PngBand> encode_png_bands(std::size_t count, std::uint32_t threads,
+                                      const std::function<PngRows(std::size_t band)>& rows_of) {
+  return encode_bands(count, threads, rows_of, encode_png_band);
+}
+
 std::vector<std::byte> encode_png(const Picture<std::uint32_t>& picture, std::uint32_t threads) {
-  return encode_bands(picture, threads, encode_png_band);
+  return encode_whole(picture, threads, encode_png_band);
 }
 
 std::vector<std::byte> encode_stored_png(const Picture<std::uint32_t>& picture) {
-  return encode_bands(picture, 1, encode_stored_png_band);
+  return encode_whole(picture, 1, encode_stored_png_band);
 }
 
 }  // namespace gridiron::tool

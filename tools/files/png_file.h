@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -39,7 +40,11 @@ struct PngBand {
 /// Errors: std::bad_alloc; Failure (kBadInput) with zlib's reason.
 [[nodiscard]] PngBand encode_png_band(const PngRows& rows);
 
-/// The same, not compressed, as in a build with GRIDIRON_WITH_PNG=OFF. Errors: std::bad_alloc.
+/// Encodes bands 0 to count - 1. @param rows_of  called once for each, on any thread. @param threads  as encode_png().
+[[nodiscard]] std::vector<PngBand> encode_png_bands(std::size_t count, std::uint32_t threads,
+                                                    const std::function<PngRows(std::size_t band)>& rows_of);
+
+/// The same as encode_png_band(), not compressed, as in a build with GRIDIRON_WITH_PNG=OFF. Errors: std::bad_alloc.
 [[nodiscard]] PngBand encode_stored_png_band(const PngRows& rows);
 
 /// @param bands  all of a picture, from the top, by one of the two encoders; freed one by one.

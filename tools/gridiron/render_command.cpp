@@ -22,6 +22,7 @@
 #include "files/input_file.h"
 #include "gridiron/device/store_facts.h"
 #include "gridiron/frame/divided_frame.h"
+#include "gridiron/frame/divided_picture.h"
 #include "gridiron/frame/frame_memory.h"
 #include "gridiron/frame/frame_pictures.h"
 #include "gridiron/frame/requested_frame.h"
@@ -242,6 +243,7 @@ void render_for_first(const RenderRequest& request) {
     if (repeat == 0 || !is_packed) share_frame(frame);
     (void)render_divided(*frame, plan, nullptr, [](std::uint32_t, std::uint32_t) {});
   }
+  encode_for_first(plan.threads);
 }
 
 }  // namespace
@@ -272,7 +274,7 @@ void run_command(const RenderRequest& request) {
 
   AtomicFiles files;
   files.add(*outputs.picture, name_in_shortage(plan.scene.input, "encode its picture",
-                                               [&] { return encode_picture(color, *outputs.picture, plan.threads); }));
+                                               [&] { return encode_divided(color, *outputs.picture, plan.threads); }));
   if (outputs.depth) {
     files.add(*outputs.depth, encode_pfm(depth_picture(plane_words(frame, plan, frame.depth))));
   }

@@ -43,6 +43,20 @@ std::optional<RankMessage> MeasuredRanks::poll() {
   return message;
 }
 
+void MeasuredRanks::tell(std::uint32_t rank, Bytes message) {
+  begin();
+  const std::uint64_t bytes = message.size();
+  ranks_.tell(rank, std::move(message));
+  end("tell_rank", bytes);
+}
+
+Bytes MeasuredRanks::hear() {
+  begin();
+  Bytes message = ranks_.hear();
+  end("hear", message.size());
+  return message;
+}
+
 void MeasuredRanks::attend() {
   begin();
   ranks_.attend();

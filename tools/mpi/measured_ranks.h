@@ -21,6 +21,8 @@ class MeasuredRanks final : public Ranks {
   void tell_first(Bytes message) override;
   [[nodiscard]] bool has_told() override { return ranks_.has_told(); }
   [[nodiscard]] std::optional<RankMessage> poll() override;
+  void tell(std::uint32_t rank, Bytes message) override;
+  [[nodiscard]] Bytes hear() override;
   void attend() override;
   void broadcast(Bytes& bytes) override;
   void share_bytes(std::span<std::byte> bytes,

@@ -118,14 +118,38 @@ void MpiRanks::start_pieces(Transfer& transfer, int tag, bool is_send) {
   }
 }
 
-void MpiRanks::tell_first(Bytes message) {
+void MpiRanks::send(std::uint32_t rank, Bytes message) {
   flush();
   told_ = std::make_unique<Transfer>();
+  told_->rank = rank;
   told_->byte_count = message.size();
   told_->bytes = std::move(message);
   MPI_Request& head = told_->requests.emplace_back(MPI_REQUEST_NULL);
-  check(MPI_Isend(&told_->byte_count, 1, MPI_UINT64_T, 0, kHeadTag, messages_, &head), "send a message");
+  check(MPI_Isend(&told_->byte_count, 1, MPI_UINT64_T, static_cast<int>(rank), kHeadTag, messages_, &head),
+        "send a message");
   start_pieces(*told_, kPieceTag, /*is_send=*/true);
+}
+
+void MpiRanks::tell_first(Bytes message) {
+  send(0, std::move(message));
+}
+
+void MpiRanks::tell(std::uint32_t rank, Bytes message) {
+  send(rank, std::move(message));
+  flush();
+}
+
+Bytes MpiRanks::hear() {
+  Patience patience;
+  while (true) {
+    look_for_message();
+    if (!arriving_.empty() && arriving_.front()->is_done()) break;
+    attend();
+    patience.pause();
+  }
+  Bytes message = std::move(arriving_.front()->bytes);
+  arriving_.pop_front();
+  return message;
 }
 
 bool MpiRanks::has_told() {

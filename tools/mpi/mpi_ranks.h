@@ -26,6 +26,8 @@ class MpiRanks final : public Ranks {
   void tell_first(Bytes message) override;
   [[nodiscard]] bool has_told() override;
   [[nodiscard]] std::optional<RankMessage> poll() override;
+  void tell(std::uint32_t rank, Bytes message) override;
+  [[nodiscard]] Bytes hear() override;
   void attend() override;
   void broadcast(Bytes& bytes) override;
   void share_bytes(std::span<std::byte> bytes,
@@ -61,6 +63,7 @@ class MpiRanks final : public Ranks {
     [[nodiscard]] bool is_done();
   };
 
+  void send(std::uint32_t rank, Bytes message);
   void start_pieces(Transfer& transfer, int tag, bool is_send);
   void look_for_failure();
   void look_for_message();

@@ -21,6 +21,8 @@ TEST_F(MpiFiles, OfAPicture) {
   expect_same_files(folder_, common + Words{"--timeline", "OUT/t.json.txt"});
   expect_same_files(folder_, common + Words{"--configuration", "reference", "--repeat", "2"});
   expect_same_files(folder_, common + Words{"--mode", "plain"});
+  // All ranks encode it: seven bands.
+  expect_same_files(folder_, {"render", "a.ply", "--size", "1600x1100", "--mode", "plain", "-o", "OUT/a.png"});
 }
 
 // Rays that wait lie in main memory too.

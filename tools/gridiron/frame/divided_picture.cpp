@@ -1,0 +1,103 @@
+// Divided picture. SPDX-License-Identifier: Apache-2.0
+#include "divided_picture.h"
+
+#include <span>
+#include <utility>
+
+#include "base/ranks.h"
+#include "base/value_bytes.h"
+#include "files/output_target.h"
+#include "files/png_file.h"
+
+namespace gridiron::tool {
+namespace {
+
+constexpr std::uint32_t kFewBands = 2;  // fewer a rank are not worth a message
+
+std::vector<std::uint32_t> bands_of_rank(std::uint32_t rank, std::uint32_t band_count) {
+  std::vector<std::uint32_t> bands;
+  for (std::uint32_t band = rank; band < band_count; band += ranks().count()) bands.push_back(band);
+  return bands;
+}
+
+void add_rows(ByteWriter& writer, const PngRows& rows) {
+  writer.add(rows.width);
+  writer.add(rows.is_last);
+  writer.add_all(rows.rows);
+  writer.add_all(rows.above);
+}
+
+// Rows that another process has sent.
+struct SentRows {
+  PngRows rows;
+  std::vector<std::uint32_t> pixels, above;
+};
+
+SentRows take_rows(ByteReader& reader) {
+  SentRows sent;
+  reader.take(sent.rows.width);
+  reader.take(sent.rows.is_last);
+  reader.take(sent.pixels);
+  reader.take(sent.above);
+  sent.rows.rows = sent.pixels;
+  sent.rows.above = sent.above;
+  return sent;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_divided(const Picture<std::uint32_t>& picture, const std::filesystem::path& path,
+                                      std::uint32_t threads) {
+  Ranks& all = ranks();
+  if (all.count() == 1) return encode_picture(picture, path, threads);
+  const std::uint32_t band_count = png_band_count(picture.width, picture.height);
+  const bool is_divided = !has_ending(path, ".pfm") && band_count >= kFewBands * all.count();
+  ByteWriter head;
+  head.add(is_divided);
+  Bytes bytes = head.take();
+  all.broadcast(bytes);
+  if (!is_divided) return encode_picture(picture, path, threads);
+
+  for (std::uint32_t rank = 1; rank < all.count(); ++rank) {
+    const std::vector<std::uint32_t> theirs = bands_of_rank(rank, band_count);
+    ByteWriter writer;
+    writer.add(static_cast<std::uint32_t>(theirs.size()));
+    for (const std::uint32_t band : theirs) add_rows(writer, png_rows_of_band(picture, band));
+    all.tell(rank, writer.take());
+  }
+  std::vector<PngBand> bands(band_count);
+  const std::vector<std::uint32_t> own = bands_of_rank(0, band_count);
+  std::vector<PngBand> encoded =
+      encode_png_bands(own.size(), threads, [&](std::size_t i) { return png_rows_of_band(picture, own[i]); });
+  for (std::size_t i = 0; i < own.size(); ++i) bands[own[i]] = std::move(encoded[i]);
+  for (std::uint32_t i = 1; i < all.count(); ++i) {
+    const RankMessage message = all.wait_message();
+    ByteReader reader(message.bytes);
+    for (const std::uint32_t band : bands_of_rank(message.rank, band_count)) {
+      reader.take(bands[band].bytes);
+      reader.take(bands[band].adler);
+      reader.take(bands[band].raw_bytes);
+    }
+  }
+  return join_png_bands(picture.width, picture.height, std::move(bands));
+}
+
+void encode_for_first(std::uint32_t threads) {
+  Ranks& all = ranks();
+  Bytes head;
+  all.broadcast(head);
+  if (!ByteReader(head).take<bool>()) return;
+  const Bytes message = all.hear();
+  ByteReader reader(message);
+  std::vector<SentRows> sent(reader.take<std::uint32_t>());
+  for (SentRows& rows : sent) rows = take_rows(reader);
+  ByteWriter writer;
+  for (const PngBand& band : encode_png_bands(sent.size(), threads, [&sent](std::size_t i) { return sent[i].rows; })) {
+    writer.add(band.bytes);
+    writer.add(band.adler);
+    writer.add(band.raw_bytes);
+  }
+  all.tell_first(writer.take());
+}
+
+}  // namespace gridiron::tool

@@ -1,0 +1,23 @@
+// Divided picture: a picture encoded by all ranks.
+// Memory: on rank 0 the picture, another rank's part of it at a time, and the file. Threads: starts its own.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "files/image_files.h"
+
+namespace gridiron::tool {
+
+/// Of rank 0: encode_picture(), of whose bands (png_file.h) rank r of N encodes those with i mod N = r, where there are
+/// a few for each. @param threads  of this rank. Errors: those of encode_picture(), and of Ranks.
+[[nodiscard]] std::vector<std::byte> encode_divided(const Picture<std::uint32_t>& picture,
+                                                    const std::filesystem::path& path, std::uint32_t threads);
+
+/// The part of another rank, which calls it when rank 0 calls encode_divided().
+void encode_for_first(std::uint32_t threads);
+
+}  // namespace gridiron::tool
