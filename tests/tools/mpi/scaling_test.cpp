@@ -113,6 +113,22 @@ TEST(ScalingModel, MessagesHoldPiecesUpToANumberOrATime) {
   EXPECT_DOUBLE_EQ(seconds(100, 2), 6);  // three at 2 s keep it busy until 5
 }
 
+TEST(ScalingModel, TheEndIsDividedToo) {
+  Costs costs = even(1, 0);
+  costs.end_divided_seconds = 12;
+  costs.end_pieces = 6;
+  const Network link{.latency_seconds = 0.125, .bytes_per_second = 8};
+  EXPECT_DOUBLE_EQ(simulate(costs, link, 1), 12);
+  EXPECT_DOUBLE_EQ(simulate(costs, link, 2), 6 + 0.125);
+  EXPECT_DOUBLE_EQ(simulate(costs, link, 4), 4 + 3 * 0.125) << "two ranks have two pieces";
+  EXPECT_DOUBLE_EQ(simulate(costs, link, 100), 2 + 5 * 0.125);
+  costs.scatter_bytes = 24;
+  costs.scatter_seconds = 3;
+  EXPECT_DOUBLE_EQ(simulate(costs, link, 1), 12);
+  EXPECT_DOUBLE_EQ(simulate(costs, link, 4), 4 + 3 * 0.125 + 0.75 * (3 + 3));
+  EXPECT_EQ(predict(costs, link, 6).limit, "encoding");
+}
+
 TEST(ScalingModel, BroadcastIsATree) {
   Costs costs = even(1024, 0);
   costs.broadcast_bytes = 100;

@@ -1,6 +1,7 @@
 // Divided picture. SPDX-License-Identifier: Apache-2.0
 #include "divided_picture.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -11,8 +12,6 @@
 
 namespace gridiron::tool {
 namespace {
-
-constexpr std::uint32_t kFewBands = 2;  // fewer a rank are not worth a message
 
 std::vector<std::uint32_t> bands_of_rank(std::uint32_t rank, std::uint32_t band_count) {
   std::vector<std::uint32_t> bands;
@@ -50,15 +49,15 @@ std::vector<std::byte> encode_divided(const Picture<std::uint32_t>& picture, con
                                       std::uint32_t threads) {
   Ranks& all = ranks();
   if (all.count() == 1) return encode_picture(picture, path, threads);
-  const std::uint32_t band_count = png_band_count(picture.width, picture.height);
-  const bool is_divided = !has_ending(path, ".pfm") && band_count >= kFewBands * all.count();
+  const std::uint32_t band_count = has_ending(path, ".pfm") ? 1 : png_band_count(picture.width, picture.height);
   ByteWriter head;
-  head.add(is_divided);
+  head.add(band_count);
   Bytes bytes = head.take();
   all.broadcast(bytes);
-  if (!is_divided) return encode_picture(picture, path, threads);
+  if (band_count == 1) return encode_picture(picture, path, threads);
 
-  for (std::uint32_t rank = 1; rank < all.count(); ++rank) {
+  const std::uint32_t helpers = std::min(all.count(), band_count);
+  for (std::uint32_t rank = 1; rank < helpers; ++rank) {
     const std::vector<std::uint32_t> theirs = bands_of_rank(rank, band_count);
     ByteWriter writer;
     writer.add(static_cast<std::uint32_t>(theirs.size()));
@@ -70,7 +69,7 @@ std::vector<std::byte> encode_divided(const Picture<std::uint32_t>& picture, con
   std::vector<PngBand> encoded =
       encode_png_bands(own.size(), threads, [&](std::size_t i) { return png_rows_of_band(picture, own[i]); });
   for (std::size_t i = 0; i < own.size(); ++i) bands[own[i]] = std::move(encoded[i]);
-  for (std::uint32_t i = 1; i < all.count(); ++i) {
+  for (std::uint32_t i = 1; i < helpers; ++i) {
     const RankMessage message = all.wait_message();
     ByteReader reader(message.bytes);
     for (const std::uint32_t band : bands_of_rank(message.rank, band_count)) {
@@ -86,7 +85,8 @@ void encode_for_first(std::uint32_t threads) {
   Ranks& all = ranks();
   Bytes head;
   all.broadcast(head);
-  if (!ByteReader(head).take<bool>()) return;
+  const auto band_count = ByteReader(head).take<std::uint32_t>();
+  if (band_count == 1 || all.rank() >= band_count) return;
   const Bytes message = all.hear();
   ByteReader reader(message);
   std::vector<SentRows> sent(reader.take<std::uint32_t>());

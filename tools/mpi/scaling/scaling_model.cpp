@@ -148,6 +148,18 @@ class Gathering {
   ByTime<std::uint32_t> arriving_;  // pieces
 };
 
+// When all pieces are there. Rank 0 sends the others their parts one by one.
+double end_seconds(const Costs& costs, const Network& network, std::uint32_t ranks) {
+  const double pieces = std::max(costs.end_pieces, 1.0), helpers = std::min<double>(ranks, pieces);
+  const double most_pieces = std::ceil(pieces / helpers);
+  double seconds = costs.end_seconds + costs.end_divided_seconds * most_pieces / pieces;
+  if (helpers > 1 && costs.end_divided_seconds > 0) {
+    seconds += (costs.scatter_seconds + seconds_of_bytes(network, costs.scatter_bytes)) * (helpers - 1) / helpers +
+               network.latency_seconds * (helpers - 1);
+  }
+  return seconds + broadcast_seconds(network, ranks, costs.spread_bytes);
+}
+
 // The work scaled so that the rank with most has an even share.
 Costs evenly_divided(Costs costs, std::uint32_t ranks) {
   double all = 0, most = 0;
@@ -168,10 +180,18 @@ Costs evenly_divided(Costs costs, std::uint32_t ranks) {
 Costs read_costs(const std::string& file, const std::string& text) {
   Costs costs;
   const std::pair<std::string_view, double Costs::*> keys[] = {
-      {"start_seconds", &Costs::start_seconds},   {"broadcast_bytes", &Costs::broadcast_bytes},
-      {"message_pieces", &Costs::message_pieces}, {"message_seconds", &Costs::message_seconds},
-      {"take_seconds", &Costs::take_seconds},     {"own_take_seconds", &Costs::own_take_seconds},
-      {"end_seconds", &Costs::end_seconds},       {"spread_bytes", &Costs::spread_bytes},
+      {"start_seconds", &Costs::start_seconds},
+      {"broadcast_bytes", &Costs::broadcast_bytes},
+      {"message_pieces", &Costs::message_pieces},
+      {"message_seconds", &Costs::message_seconds},
+      {"take_seconds", &Costs::take_seconds},
+      {"own_take_seconds", &Costs::own_take_seconds},
+      {"end_divided_seconds", &Costs::end_divided_seconds},
+      {"end_pieces", &Costs::end_pieces},
+      {"scatter_seconds", &Costs::scatter_seconds},
+      {"scatter_bytes", &Costs::scatter_bytes},
+      {"end_seconds", &Costs::end_seconds},
+      {"spread_bytes", &Costs::spread_bytes},
   };
   std::set<std::string, std::less<>> seen;
   std::uint64_t line_number = 0;
@@ -208,8 +228,7 @@ Costs read_costs(const std::string& file, const std::string& text) {
 
 double simulate(const Costs& costs, const Network& network, std::uint32_t ranks) {
   const double begin = costs.start_seconds + broadcast_seconds(network, ranks, costs.broadcast_bytes);
-  return Gathering(costs, network, ranks, begin).run() + broadcast_seconds(network, ranks, costs.spread_bytes) +
-         costs.end_seconds;
+  return Gathering(costs, network, ranks, begin).run() + end_seconds(costs, network, ranks);
 }
 
 Prediction predict(const Costs& costs, const Network& network, std::uint32_t ranks) {
@@ -239,6 +258,9 @@ Prediction predict(const Costs& costs, const Network& network, std::uint32_t ran
   changed = costs;
   changed.end_seconds = 0;
   try_without("end of rank 0", changed, network);
+  changed = costs;
+  changed.end_divided_seconds = changed.scatter_seconds = changed.scatter_bytes = 0;
+  try_without("encoding", changed, network);
   changed = costs;
   for (Piece& piece : changed.pieces) piece.bytes *= 1e-9;
   try_without("bandwidth", changed, network);

@@ -17,14 +17,18 @@ struct Piece {
 /// Costs of one command, in processor seconds.
 struct Costs {
   std::string name;
-  double start_seconds = 0;     ///< of rank 0, before all others can begin: reading, building
-  double broadcast_bytes = 0;   ///< that each rank needs before it begins
-  double message_pieces = 1;    ///< that a message holds at most
-  double message_seconds = 0;   ///< a message ends with the piece that reaches so much work; 0: any amount
-  double take_seconds = 0;      ///< of rank 0, for a piece of another rank
-  double own_take_seconds = 0;  ///< of rank 0, for a piece of its own, besides its work
-  double end_seconds = 0;       ///< of rank 0, when all pieces are there: encoding, tables
-  double spread_bytes = 0;      ///< that each rank needs at the end
+  double start_seconds = 0;        ///< of rank 0, before all others can begin: reading, building
+  double broadcast_bytes = 0;      ///< that each rank needs before it begins
+  double message_pieces = 1;       ///< that a message holds at most
+  double message_seconds = 0;      ///< a message ends with the piece that reaches so much work; 0: any amount
+  double take_seconds = 0;         ///< of rank 0, for a piece of another rank
+  double own_take_seconds = 0;     ///< of rank 0, for a piece of its own, besides its work
+  double end_seconds = 0;          ///< of rank 0, when all pieces are there: hashes, files, tables
+  double end_divided_seconds = 0;  ///< of all ranks then: encoding
+  double end_pieces = 1;           ///< in so many equal pieces
+  double scatter_seconds = 0;      ///< of rank 0, to send all that it needs, its own part too
+  double scatter_bytes = 0;        ///< these
+  double spread_bytes = 0;         ///< that each rank needs at the end
   std::vector<Piece> pieces;
 };
 
