@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/progress.h"
 #include "base/ranks.h"
@@ -31,6 +32,7 @@
 #include "gridiron/info/worst_of_view.h"
 #include "gridiron/scene/effect_names.h"
 #include "gridiron/scene/scene_input.h"
+#include "gridiron/sweep/sweep_files.h"
 
 namespace gridiron::tool {
 namespace {
@@ -138,7 +140,6 @@ void print_picture(const RenderPlan& plan, const Picture<std::uint32_t>& color, 
 }
 
 void print_timing(const RenderPlan& plan, const sim::FrameTiming& timing) {
-  const double core_cycles = timing.frame_cycles * static_cast<double>(timing.cores.size());
   if (sim::counts_instructions(*plan.scene.machine)) {
     std::printf("%s, %s: %s\n", std::string(plan.scene.machine->name).c_str(),
                 words_of_count(timing.cores.size(), "core").c_str(),
@@ -148,8 +149,7 @@ void print_timing(const RenderPlan& plan, const sim::FrameTiming& timing) {
   std::printf("%s, %s: %s cycles, %.2f ms, %.2f frames/s; %.2f %% of the cycles wait for DMA\n",
               std::string(plan.scene.machine->name).c_str(), words_of_count(timing.cores.size(), "core").c_str(),
               words_of_count(static_cast<std::uint64_t>(timing.frame_cycles)).c_str(), timing.seconds * 1e3,
-              timing.seconds > 0 ? 1 / timing.seconds : 0.0,
-              core_cycles > 0 ? 100 * wait_cycles_of(timing) / core_cycles : 0.0);
+              timing.seconds > 0 ? 1 / timing.seconds : 0.0, wait_percent_of(timing));
 }
 
 // Shares of the cores' cycles, for scenes with effects. Every eye ray of a pixel has its part in each.
@@ -222,6 +222,14 @@ Repeated render_repeatedly(std::optional<FrameMemory>& frame, RequestedFrame& re
   return repeated;
 }
 
+// All ranks call it. @param trace  of rank 0.
+std::vector<SweepFigures> sweep(const RenderRequest& request, const RenderPlan& plan, sim::FrameTrace& trace) {
+  if (request.varied.empty()) return {};
+  sim::MachineProfile base = *request.scene.machine;
+  base.core_count = plan.cores;
+  return replay_sweep(trace, base, request.varied, request.threads.value_or(this_host().threads), request.scene.quiet);
+}
+
 void give_plan(const RequestedFrame& requested) {
   if (ranks().count() == 1) return;
   ByteWriter writer;
@@ -231,7 +239,7 @@ void give_plan(const RequestedFrame& requested) {
   ranks().broadcast(bytes);
 }
 
-// The part of another rank than 0, step by step as render_repeatedly().
+// The part of another rank than 0, step by step as render_repeatedly() and what follows it.
 void render_for_first(const RenderRequest& request) {
   Bytes bytes;
   ranks().broadcast(bytes);
@@ -243,6 +251,8 @@ void render_for_first(const RenderRequest& request) {
     if (repeat == 0 || !is_packed) share_frame(frame);
     (void)render_divided(*frame, plan, nullptr, [](std::uint32_t, std::uint32_t) {});
   }
+  sim::FrameTrace trace;
+  (void)sweep(request, plan, trace);
   encode_for_first(plan.threads);
 }
 
@@ -259,8 +269,9 @@ void run_command(const RenderRequest& request) {
   std::optional<FrameMemory> memory;
   const sim::ReplayOptions replay = {.core_count = plan.cores,
                                      .timeline = outputs.timeline.has_value() || plan.has_bound};
-  // A bound is compared with the traces.
-  Repeated repeated = render_repeatedly(memory, requested, has_time(plan) && !plan.has_bound ? &replay : nullptr);
+  // A bound is compared with the traces, and a sweep replays them again.
+  const bool keeps_traces = plan.has_bound || !plan.varied.empty();
+  Repeated repeated = render_repeatedly(memory, requested, has_time(plan) && !keeps_traces ? &replay : nullptr);
   const FrameMemory& frame = *memory;
   const Picture<std::uint32_t> color = plane_words(frame, plan, frame.color);
   sim::FrameTiming timing;
@@ -271,6 +282,8 @@ void run_command(const RenderRequest& request) {
         repeated.frame.timing ? std::move(*repeated.frame.timing) : sim::replay(trace, *plan.scene.machine, replay);
     if (plan.has_bound) worst = collect_worst_tiles(plan, *memory, trace, timing);
   }
+
+  const std::vector<SweepFigures> swept = sweep(request, plan, repeated.frame.chip.trace);
 
   AtomicFiles files;
   files.add(*outputs.picture, name_in_shortage(plan.scene.input, "encode its picture",
@@ -285,6 +298,11 @@ void run_command(const RenderRequest& request) {
     files.add(*outputs.report, report_json(report));
   }
   if (outputs.timeline) files.add(*outputs.timeline, timeline_json(timing, *plan.scene.machine));
+  if (outputs.sweep) files.add(*outputs.sweep, sweep_csv(plan.varied, swept));
+  if (outputs.sweep_plot) {
+    const std::string title = input.path.filename().string() + " on " + std::string(plan.scene.machine->name);
+    files.add(*outputs.sweep_plot, sweep_svg(plan.varied, swept, title));
+  }
   files.commit_at_end();
 
   if (plan.scene.quiet) return;
@@ -297,6 +315,10 @@ void run_command(const RenderRequest& request) {
   std::printf("host: %.3f s to load, %.3f s to build, %.3f s to render on %s (%.3f s of processor time)%s\n",
               input.load_seconds.wall, repeated.build.wall, repeated.render.wall,
               words_of_count(plan.threads, "thread").c_str(), repeated.render.processor, least.c_str());
+  if (!swept.empty()) {
+    const OutputTarget target = target_of(outputs.sweep ? *outputs.sweep : *outputs.sweep_plot);
+    std::printf("%s: %s\n", target.name.c_str(), words_of_sweep(swept).c_str());
+  }
 }
 
 }  // namespace gridiron::tool

@@ -15,6 +15,7 @@ constexpr const char* kBody = R"BASH(
 # Adds to COMPREPLY what begins with $1: words of $words; files that end in one of $endings, and folders.
 _gridiron_offer() {
   local current=$1 prefix=${2:-} name bare files=() fitting=()
+  case $words in *=) compopt -o nospace 2> /dev/null ;; esac  # what follows belongs to the word
   mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -P "$prefix" -W "$words" -- "$current")
   [ -n "$endings" ] || return 0
   compopt -o filenames 2> /dev/null

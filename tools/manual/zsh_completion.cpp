@@ -9,8 +9,9 @@ constexpr const char* kOpening = R"ZSH( for zsh, written by tools/manual from th
 
 # Offers words, and files whose names end in one of the endings; '/': folders.
 _gridiron_offer() {
-  local words=$1 endings=$2 found=1
-  if [[ -n $words ]]; then compadd -- ${=words} && found=0; fi
+  local words=$1 endings=$2 found=1 suffix=()
+  if [[ $words == *= ]]; then suffix=(-S ''); fi  # what follows belongs to the word
+  if [[ -n $words ]]; then compadd "${suffix[@]}" -- ${=words} && found=0; fi
   case $endings in
     '') ;;
     /) _files -/ && found=0 ;;

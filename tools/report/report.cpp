@@ -207,6 +207,11 @@ double wait_cycles_of(const sim::FrameTiming& timing) {
   return cycles;
 }
 
+double wait_percent_of(const sim::FrameTiming& timing) {
+  const double core_cycles = timing.frame_cycles * static_cast<double>(timing.cores.size());
+  return core_cycles > 0 ? 100 * wait_cycles_of(timing) / core_cycles : 0.0;
+}
+
 // clang-format off
 std::string_view stage_name(Stage stage) {
   using enum Stage;

@@ -95,6 +95,9 @@ struct ReportInput {
 /// @returns core cycles stalled for transfers, all cores.
 [[nodiscard]] double wait_cycles_of(const sim::FrameTiming& timing);
 
+/// @returns the same in % of the cycles of all cores.
+[[nodiscard]] double wait_percent_of(const sim::FrameTiming& timing);
+
 /// @returns the stable snake_case name of a stage of a frame with effects.
 [[nodiscard]] std::string_view stage_name(Stage stage);
 

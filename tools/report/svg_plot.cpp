@@ -41,12 +41,12 @@ std::string units(double place) {
 // Builds an SVG document.
 class Drawing {
  public:
-  explicit Drawing(std::string_view title) {
+  explicit Drawing(std::string_view title, double height = kPlotHeight) {
     text_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number_text(kPlotWidth) + " " +
-            number_text(kPlotHeight) + "\" role=\"img\" font-family=\"system-ui, sans-serif\" font-size=\"13\">\n";
+            number_text(height) + "\" role=\"img\" font-family=\"system-ui, sans-serif\" font-size=\"13\">\n";
     text_ += "<title>" + escape_markup(title) + "</title>\n";
-    text_ += "<rect width=\"" + number_text(kPlotWidth) + "\" height=\"" + number_text(kPlotHeight) +
-             "\" fill=\"#ffffff\"/>\n";
+    text_ +=
+        "<rect width=\"" + number_text(kPlotWidth) + "\" height=\"" + number_text(height) + "\" fill=\"#ffffff\"/>\n";
     write(kPlotWidth / 2, 24, title, "middle", "font-size=\"16\" fill=\"#222222\"");
   }
 
@@ -108,7 +108,7 @@ void draw_y_axis(Drawing& drawing, const PlotArea& area, const Axis& y, std::str
 }
 
 // Names and colours in rows below the plot.
-enum class Mark : std::uint8_t { kLine, kDashes, kDot, kHollowDot, kOutlinedDot, kRing };
+enum class Mark : std::uint8_t { kLine, kBrokenLine, kDashes, kDot, kHollowDot, kOutlinedDot, kRing };
 
 struct LegendEntry {
   std::string name;
@@ -129,7 +129,11 @@ std::string dot_style(std::string_view color, Mark mark) {
 
 constexpr std::string_view kRingStyle = "fill=\"none\" stroke=\"#444444\" stroke-width=\"1.3\"";
 
-void draw_legend(Drawing& drawing, const PlotArea& area, const std::vector<LegendEntry>& entries) {
+constexpr std::string_view kBroken = " stroke-dasharray=\"7 3\"";
+
+// Where the entries are, in rows.
+std::vector<Point2> legend_places(const PlotArea& area, const std::vector<LegendEntry>& entries) {
+  std::vector<Point2> places;
   double x = area.left;
   double y = area.bottom + 66;
   for (const LegendEntry& entry : entries) {
@@ -138,9 +142,20 @@ void draw_legend(Drawing& drawing, const PlotArea& area, const std::vector<Legen
       x = area.left;
       y += 20;
     }
-    const bool dashed = entry.mark == Mark::kDashes;
-    if (dashed || entry.mark == Mark::kLine) {
-      const std::string dash = dashed ? " stroke-dasharray=\"5 4\"" : "";
+    places.push_back({x, y});
+    x += width + 8;
+  }
+  return places;
+}
+
+void draw_legend(Drawing& drawing, const PlotArea& area, const std::vector<LegendEntry>& entries) {
+  const std::vector<Point2> places = legend_places(area, entries);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const LegendEntry& entry = entries[i];
+    const auto [x, y] = places[i];
+    const bool dashed = entry.mark == Mark::kDashes, broken = entry.mark == Mark::kBrokenLine;
+    if (dashed || broken || entry.mark == Mark::kLine) {
+      const std::string dash(dashed ? " stroke-dasharray=\"5 4\"" : broken ? kBroken : "");
       drawing.line(
           x, y - 4.5, x + 18, y - 4.5,
           "stroke=\"" + std::string(entry.color) + "\" stroke-width=\"" + (dashed ? "1.5" : "4") + "\"" + dash);
@@ -150,7 +165,6 @@ void draw_legend(Drawing& drawing, const PlotArea& area, const std::vector<Legen
                      ring ? std::string(kRingStyle) : dot_style(entry.color, entry.mark), entry.name);
     }
     drawing.write(x + 24, y, entry.name, "start", kLabel);
-    x += width + 8;
   }
 }
 
@@ -283,24 +297,36 @@ std::string line_chart_svg(const LineChart& chart) {
                      ? span_axis(y_least, y_greatest, area.bottom, area.top)
                      : fit_axis(y_least, y_greatest, chart.log_y, area.bottom, area.top);
 
-  // 2. Axes, ticks, titles.
-  Drawing drawing(chart.title);
+  // 2. The legend decides the height. Dashed curves are grey, the others take the colours in turn.
+  std::vector<LegendEntry> legend;
+  std::size_t color_count = 0;
+  for (const Series& series : chart.series) {
+    const Mark line = color_count < kColors.size() ? Mark::kLine : Mark::kBrokenLine;
+    legend.push_back(
+        {series.name, series.dashed ? "#888888" : color_of(color_count++), series.dashed ? Mark::kDashes : line});
+  }
+  constexpr double kBelowLegend = 12;
+  const double legend_end = legend.empty() ? 0 : legend_places(area, legend).back().y + kBelowLegend;
+
+  // 3. Axes, ticks, titles.
+  Drawing drawing(chart.title, std::max(kPlotHeight, legend_end));
   draw_y_axis(drawing, area, y, chart.y_title);
   const std::vector<double> ticks = chart.x_ticks.empty() ? tick_values(x.low, x.high, x.logarithmic) : chart.x_ticks;
   draw_x_axis(drawing, area, x, ticks, chart.x_title);
 
-  // 3. Curves. Dashed ones are grey, the others take the colours in turn.
-  std::vector<LegendEntry> legend;
-  std::size_t color_count = 0;
-  for (const Series& series : chart.series) {
-    const std::string_view color = series.dashed ? "#888888" : color_of(color_count++);
+  // 4. Curves.
+  for (std::size_t i = 0; i < chart.series.size(); ++i) {
+    const Series& series = chart.series[i];
+    const std::string_view color = legend[i].color;
     std::vector<Point2> places;
     for (const Point2& point : series.points) {
       if (shown(point)) places.push_back({x.place(point.x), y.place(point.y)});
     }
     const std::string stroke = "stroke=\"" + std::string(color) + "\" ";
-    drawing.curve(places, stroke + (series.dashed ? "stroke-width=\"1.5\" stroke-dasharray=\"5 4\""
-                                                  : "stroke-width=\"2.2\" stroke-linejoin=\"round\""));
+    drawing.curve(places, stroke +
+                              (series.dashed ? "stroke-width=\"1.5\" stroke-dasharray=\"5 4\""
+                                             : "stroke-width=\"2.2\" stroke-linejoin=\"round\"") +
+                              std::string(legend[i].mark == Mark::kBrokenLine ? kBroken : ""));
     if (!series.dashed) {
       for (const Point2& point : series.points) {
         if (!shown(point)) continue;
@@ -308,7 +334,6 @@ std::string line_chart_svg(const LineChart& chart) {
                     series.name + ": " + number_text(point.x) + ", " + number_text(point.y));
       }
     }
-    legend.push_back({series.name, color, series.dashed ? Mark::kDashes : Mark::kLine});
   }
   draw_legend(drawing, area, legend);
   return drawing.finish();

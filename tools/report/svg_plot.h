@@ -19,6 +19,9 @@ struct PlotArea {
 };
 inline constexpr double kPlotWidth = 720, kPlotHeight = 470;
 
+/// What a line chart shows clearly: its legend grows, and so does the picture, but a name has one row.
+inline constexpr std::size_t kMostSeries = 16, kMostNameLetters = 80;
+
 /// One axis: its end values, and their positions in the picture.
 struct Axis {
   double low = 0, high = 1;   ///< values; 0 < low on a logarithmic axis
@@ -97,7 +100,8 @@ struct HistogramChart {
 /// count for each bin and a cost for each part.
 [[nodiscard]] std::string histogram_chart_svg(const HistogramChart& chart);
 
-/// @returns a whole SVG document. Points that the axes cannot show are left out.
+/// @returns a whole SVG document. Points that the axes cannot show are left out. There are eight colours; the curves
+/// behind the eighth have them again, broken.
 [[nodiscard]] std::string line_chart_svg(const LineChart& chart);
 
 /// @returns a whole SVG document. Precondition: values has groups x bars x parts elements.

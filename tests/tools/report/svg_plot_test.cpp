@@ -50,6 +50,32 @@ TEST(SvgPlot, TickLabelsAreShort) {
   EXPECT_EQ(tick_text(2.5e9), "2.5G");
 }
 
+// The ninth curve has the first's colour, but not its stroke; a long legend makes the picture higher.
+TEST(SvgPlot, ManyCurvesCanBeToldApart) {
+  LineChart chart = {.title = "t", .x_title = "x", .y_title = "y"};
+  std::set<std::string> strokes;
+  for (std::size_t i = 0; i < kMostSeries; ++i) {
+    chart.series.push_back({std::string(kMostNameLetters - 2, 'n') + std::to_string(10 + i), {{0, 1}, {9, double(i)}}});
+  }
+  const auto elements = parse_markup(line_chart_svg(chart));
+  for (const MarkupElement& curve : elements_named(elements, "polyline")) {
+    strokes.insert(curve.attributes.at("stroke") +
+                   (curve.attributes.count("stroke-dasharray") != 0 ? curve.attributes.at("stroke-dasharray") : ""));
+  }
+  EXPECT_EQ(strokes.size(), kMostSeries);
+  const double height = elements_named(elements, "rect").front().number("height");
+  std::set<double> rows;
+  for (const Series& series : chart.series) {
+    const MarkupElement* name = text_element(elements, series.name);
+    ASSERT_NE(name, nullptr);
+    rows.insert(name->number("y"));
+    EXPECT_LT(name->number("y"), height);
+  }
+  EXPECT_EQ(rows.size(), kMostSeries) << "a row each";
+  chart.series.resize(3);
+  EXPECT_EQ(elements_named(parse_markup(line_chart_svg(chart)), "rect").front().number("height"), kPlotHeight);
+}
+
 TEST(SvgPlot, LinesGoThroughTheirPoints) {
   const PlotArea area;
   const LineChart chart = {.title = "A < B & \"C\"",

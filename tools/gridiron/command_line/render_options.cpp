@@ -23,6 +23,26 @@ std::optional<std::uint64_t> parse_seed(const std::string& text) {
   return std::stoull(text);
 }
 
+void add_sweep_options(CLI::App& app, RenderRequest& render) {
+  const auto add = [&render](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) render.varied.push_back(parse_varied_key(text));
+    return true;
+  };
+  Offer offer;
+  for (const std::string& key : keys_of_replays()) offer.words.push_back(key + "=");
+  set_offer(*app.add_option("--vary", add,
+                            "replay the rendered frame on machines that differ in this key of machine files, with each "
+                            "of the values; up to 3 times, for all combinations, 4096 machines at most; a value is "
+                            "what a machine file has there; needs --sweep or --sweep-plot")
+                 ->type_name("KEY=VALUE,...")
+                 ->expected(1)
+                 ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll),
+            offer);
+  add_output(app, "--sweep", render.outputs.sweep, {"csv"}, "a row for each machine of --vary: its cycles, CSV");
+  add_output(app, "--sweep-plot", render.outputs.sweep_plot, {"svg"},
+             "frames a second against the first key of --vary, a curve for each combination of the others, SVG");
+}
+
 void add_output_options(CLI::App& app, RenderRequest& render) {
   FrameOutputs& outputs = render.outputs;
   add_output(app, "-o,--output", outputs.picture, kPictureEndings,
@@ -35,6 +55,7 @@ void add_output_options(CLI::App& app, RenderRequest& render) {
              "than 4, --tile)");
   add_output(app, "--timeline", outputs.timeline, {"json"},
              "what each core did when, Chrome trace format; not with --mode plain");
+  add_sweep_options(app, render);
   app.add_flag(
       "--bound", render.has_bound,
       "what the tiles of best may take for this camera too, in the report and beside the worst tile; takes about "

@@ -2,8 +2,6 @@
 #include "machine_file.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -161,42 +159,8 @@ class Reader {
     }
     const auto index = static_cast<std::size_t>(known - keys_.begin());
     if (is_given_[index]) fail("second " + quoted);
-    if (value.empty()) fail(quoted + " has no value");
+    if (const auto defect = set_number(*known, value)) fail(*defect);
     is_given_[index] = true;
-    if (sim::Latency* const* const latency = std::get_if<sim::Latency*>(&known->number)) {
-      **latency = read_latency(*known, quoted, value);
-      return;
-    }
-    if (value.find_first_of(kBlanks) != std::string_view::npos) fail(quoted + " takes one number");
-    read_number(*known, quoted, value);
-  }
-
-  // "500", or "400:0.98 5400:0.02".
-  sim::Latency read_latency(const MachineKey& key, const std::string& quoted, std::string_view value) const {
-    std::vector<sim::LatencyShare> shares;
-    double sum = 0;
-    while (!value.empty()) {
-      const std::string_view word = value.substr(0, std::min(value.find_first_of(kBlanks), value.size()));
-      value = trimmed(value.substr(word.size()));
-      const std::size_t colon = word.find(':');
-      if (colon == std::string_view::npos) {
-        if (!shares.empty() || !value.empty()) {
-          fail(quoted + " takes one number, or several with shares, like 400:0.98 5400:0.02");
-        }
-        return real_number(key, quoted, word);
-      }
-      if (shares.size() == sim::Latency::kMaxShares) {
-        fail(quoted + " takes at most " + std::to_string(sim::Latency::kMaxShares) + " numbers");
-      }
-      MachineKey share = key;
-      share.least = 0x1p-32;
-      share.most = 1;
-      shares.push_back({real_number(key, quoted, word.substr(0, colon)),
-                        real_number(share, "a share of " + quoted, word.substr(colon + 1))});
-      sum += shares.back().share;
-    }
-    if (std::abs(sum - 1) > 1e-9) fail("the shares of " + quoted + " add up to " + text_of(sum) + ", not to 1");
-    return std::span<const sim::LatencyShare>(shares);
   }
 
   void read_base(std::string_view value) {
@@ -208,40 +172,6 @@ class Reader {
     }
     machine_->profile = *base;
     has_base_ = true;
-  }
-
-  double real_number(const MachineKey& key, const std::string& quoted_key, std::string_view text) const {
-    double value = 0;
-    MachineKey number = key;
-    number.number = &value;
-    read_number(number, quoted_key, text);
-    return value;
-  }
-
-  void read_number(const MachineKey& key, const std::string& quoted_key, std::string_view text) const {
-    const bool is_whole = !std::holds_alternative<double*>(key.number);
-    double value = 0;
-    std::uint64_t count = 0;
-    const char* const end = text.data() + text.size();
-    const auto parsed = is_whole ? std::from_chars(text.data(), end, count) : std::from_chars(text.data(), end, value);
-    const bool too_large = parsed.ec == std::errc::result_out_of_range && parsed.ptr == end;
-    if (!too_large && (parsed.ec != std::errc{} || parsed.ptr != end || !std::isfinite(value))) {
-      fail(in_quotes(text) + " is not a " + (is_whole ? "whole number" : "number"));
-    }
-    if (is_whole) value = static_cast<double>(count);
-    if (too_large || value < key.least || value > key.most) {
-      const auto limit_text = [is_whole](double limit) {
-        return is_whole ? std::to_string(static_cast<std::uint64_t>(limit)) : text_of(limit);
-      };
-      fail(quoted_key + " must be from " + limit_text(key.least) + " to " + limit_text(key.most) + ", not " +
-           in_quotes(text));
-    }
-    const auto store = [&]<class Number>(Number* number) {
-      if constexpr (std::is_arithmetic_v<Number>) {
-        *number = is_whole ? static_cast<Number>(count) : static_cast<Number>(value);
-      }
-    };
-    std::visit(store, key.number);
   }
 
   void finish() {
@@ -325,16 +255,7 @@ std::string machine_text(const MachineProfile& machine) {
   };
   add("name", std::string(machine.name));
   add("description", std::string(machine.description));
-  for (const MachineKey& key : keys) {
-    const auto words_of = []<class Number>(const Number* number) {
-      if constexpr (std::is_integral_v<Number>) {
-        return std::to_string(*number);
-      } else {
-        return text_of(*number);
-      }
-    };
-    add(key.name, std::visit(words_of, key.number));
-  }
+  for (const MachineKey& key : keys) add(key.name, text_of(key));
   return text;
 }
 

@@ -4,12 +4,18 @@
 #include <gridiron/sim/build_work.h>
 #include <gridiron/sim/engine_work.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <span>
+#include <system_error>
+#include <type_traits>
 
 #include "base/numbers.h"
+#include "base/words.h"
 
 namespace gridiron::tool {
 namespace {
@@ -95,7 +101,103 @@ MachineKeyHelp help_of(std::string key, const Limits& limits, std::string_view m
   return {std::move(key), limit_text(limits.least) + " to " + limit_text(limits.most), meaning};
 }
 
+constexpr std::string_view kBetweenNumbers = " \t";
+
+// Takes the first word, and the blanks behind it, from `text`.
+std::string_view take_word(std::string_view& text) {
+  const std::string_view word = text.substr(0, text.find_first_of(kBetweenNumbers));
+  text.remove_prefix(word.size());
+  text.remove_prefix(std::min(text.find_first_not_of(kBetweenNumbers), text.size()));
+  return word;
+}
+
+// As set_number(), of a key that is not a latency. @param quoted  its name in messages.
+std::optional<std::string> set_plain(const MachineKey& key, const std::string& quoted, std::string_view text) {
+  const bool is_whole = !std::holds_alternative<double*>(key.number);
+  double value = 0;
+  std::uint64_t count = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = is_whole ? std::from_chars(text.data(), end, count) : std::from_chars(text.data(), end, value);
+  const bool too_large = parsed.ec == std::errc::result_out_of_range && parsed.ptr == end;
+  const auto limit_text = [is_whole](double limit) {
+    return is_whole ? std::to_string(static_cast<std::uint64_t>(limit)) : text_of(limit);
+  };
+  const std::string range = "from " + limit_text(key.least) + " to " + limit_text(key.most);
+  if (!too_large && (parsed.ec != std::errc{} || parsed.ptr != end || !std::isfinite(value))) {
+    return in_quotes(text) + " is not a " + (is_whole ? "whole number " : "number ") + range;
+  }
+  if (is_whole) value = static_cast<double>(count);
+  if (too_large || value < key.least || value > key.most) {
+    return quoted + " must be " + range + ", not " + in_quotes(text);
+  }
+  const auto store = [&]<class Number>(Number* number) {
+    if constexpr (std::is_arithmetic_v<Number>) {
+      *number = is_whole ? static_cast<Number>(count) : static_cast<Number>(value);
+    }
+  };
+  std::visit(store, key.number);
+  return std::nullopt;
+}
+
+// The same of "500", or "400:0.98 5400:0.02".
+std::optional<std::string> set_latency(const MachineKey& key, sim::Latency& latency, std::string_view text) {
+  const std::string quoted = in_quotes(key.name);
+  const auto set_real = [](double& real, MachineKey limits, const std::string& name, std::string_view word) {
+    limits.number = &real;
+    return set_plain(limits, name, word);
+  };
+  if (text.find(':') == std::string_view::npos && text.find_first_of(kBetweenNumbers) == std::string_view::npos) {
+    double cycles = 0;
+    const std::optional<std::string> defect = set_real(cycles, key, quoted, text);
+    if (!defect) latency = cycles;
+    return defect;
+  }
+  MachineKey share_key = key;
+  share_key.least = 0x1p-32;
+  share_key.most = 1;
+  std::vector<sim::LatencyShare> shares;
+  double sum = 0;
+  while (!text.empty()) {
+    const std::string_view word = take_word(text);
+    const std::size_t colon = word.find(':');
+    if (colon == std::string_view::npos) {
+      return quoted + " takes one number, or several with shares, like 400:0.98 5400:0.02";
+    }
+    if (shares.size() == sim::Latency::kMaxShares) {
+      return quoted + " takes at most " + std::to_string(sim::Latency::kMaxShares) + " numbers";
+    }
+    sim::LatencyShare& one = shares.emplace_back();
+    if (auto defect = set_real(one.cycles, key, quoted, word.substr(0, colon))) return defect;
+    if (auto defect = set_real(one.share, share_key, "a share of " + quoted, word.substr(colon + 1))) return defect;
+    sum += one.share;
+  }
+  if (std::abs(sum - 1) > 1e-9) return "the shares of " + quoted + " add up to " + text_of(sum) + ", not to 1";
+  latency = std::span<const sim::LatencyShare>(shares);
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::optional<std::string> set_number(const MachineKey& key, std::string_view text) {
+  const std::string quoted = in_quotes(key.name);
+  if (text.empty()) return quoted + " has no value";
+  if (sim::Latency* const* const latency = std::get_if<sim::Latency*>(&key.number)) {
+    return set_latency(key, **latency, text);
+  }
+  if (text.find_first_of(kBetweenNumbers) != std::string_view::npos) return quoted + " takes one number";
+  return set_plain(key, quoted, text);
+}
+
+std::string text_of(const MachineKey& key) {
+  const auto text = []<class Number>(const Number* number) {
+    if constexpr (std::is_integral_v<Number>) {
+      return std::to_string(*number);
+    } else {
+      return text_of(*number);
+    }
+  };
+  return std::visit(text, key.number);
+}
 
 std::vector<MachineKey> machine_keys(MachineProfile& machine) {
   std::vector<MachineKey> keys;

@@ -4,6 +4,7 @@
 
 #include <gridiron/sim/machine_profile.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -22,6 +23,12 @@ struct MachineKey {
 /// @returns every number of `machine`, in the order of machine files and JSON.
 [[nodiscard]] std::vector<MachineKey> machine_keys(sim::MachineProfile& machine);
 
+/// Sets the number of `key` to what `text`, a value of a machine file, says.
+/// @returns what is wrong with the text, with the name or the range of the key; nothing if the number is set.
+[[nodiscard]] std::optional<std::string> set_number(const MachineKey& key, std::string_view text);
+
+/// @returns the number of `key` as a value of a machine file.
+[[nodiscard]] std::string text_of(const MachineKey& key);
 /// @returns the shortest text that reads back as the same double.
 [[nodiscard]] std::string text_of(double value);
 /// @returns "500", or "400:0.98 5400:0.02".

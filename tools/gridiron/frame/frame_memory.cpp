@@ -80,6 +80,22 @@ MainAddress place_image(FrameMemory& frame, const SceneInput& input, const Rende
   return region.address;
 }
 
+// A sweep replays the trace of one image. Where its machines have other numbers of cores, the rays that wait leave more
+// or less of the main memory to the image.
+void require_same_image(const FrameMemory& frame, const RenderPlan& plan, std::uint64_t budget_bytes,
+                        const std::function<std::uint64_t(std::uint32_t cores)>& budget_of) {
+  // A packed scene needs what it has; one that is built may need more than it has in the end.
+  const std::uint64_t image_bytes = std::max(frame.need.image_bytes, frame.image.header.image_bytes);
+  const bool is_reduced = frame.image.has_grid && frame.image.grid.lambda != frame.wanted_lambda;
+  for (const std::uint32_t cores : varied_core_counts(plan.varied)) {
+    const std::uint64_t budget = budget_of(cores);
+    if (image_bytes <= budget && (!is_reduced || budget == budget_bytes)) continue;
+    usage_error("--vary: with 'core_count' " + std::to_string(cores) + " the rays that wait leave " +
+                words_of_bytes(budget) + " of main memory to the scene, whose image of " + words_of_bytes(image_bytes) +
+                " would not fit or would be another: render it for each value, with --machine");
+  }
+}
+
 // Makes the frame record from the settings. @param source  the scene, for messages.
 void make_record(FrameMemory& frame, const std::filesystem::path& source) {
   const Status status = make_frame_record(frame.settings, frame.image, frame.image_address, frame.record);
@@ -120,9 +136,13 @@ void prepare(FrameMemory& frame, const SceneInput& input, const RenderPlan& plan
              InputFile* movable) {
   const std::uint32_t depth = waiting_depth(input, plan);
   const std::uint32_t planes = 1u + (plan.has_depth ? 1u : 0u) + (plan.has_ids ? 1u : 0u);
-  const std::uint64_t budget_bytes = image_budget_bytes(*plan.scene.machine, plan.width, plan.height, planes,
-                                                        plan.layout.tile_width, spill_bytes_of(plan.cores, depth));
+  const auto budget_of = [&](std::uint32_t cores) {
+    return image_budget_bytes(*plan.scene.machine, plan.width, plan.height, planes, plan.layout.tile_width,
+                              spill_bytes_of(cores, depth));
+  };
+  const std::uint64_t budget_bytes = budget_of(plan.cores);
   frame.image_address = place_image(frame, input, plan, budget_bytes, movable);
+  require_same_image(frame, plan, budget_bytes, budget_of);
 
   // A PFM file stores ids as floats.
   if (plan.outputs.ids) require_exact_ids(input.path, frame.image.header.triangle_count);

@@ -9,6 +9,7 @@
 #include "base/ranks.h"
 #include "files/input_file.h"
 #include "gridiron/device/store_facts.h"
+#include "gridiron/sweep/sweep_files.h"
 
 namespace gridiron::tool {
 namespace {
@@ -129,6 +130,26 @@ std::uint32_t techniques_of(const RenderRequest& request, const Configuration& c
   return configuration.techniques & ~off;
 }
 
+// A sweep replays the trace of a whole frame.
+void check_sweep(const RenderRequest& request, std::uint32_t lanes) {
+  const FrameOutputs& outputs = request.outputs;
+  if (request.varied.empty()) {
+    if (outputs.sweep) usage_error("--sweep: needs --vary, which says what the machines differ in");
+    if (outputs.sweep_plot) usage_error("--sweep-plot: needs --vary, which says what the machines differ in");
+    return;
+  }
+  if (!outputs.sweep && !outputs.sweep_plot)
+    usage_error("--vary: needs --sweep or --sweep-plot, a file of its figures");
+  check_varied_keys(request.varied);
+  if (outputs.sweep_plot) check_sweep_plot(request.varied);
+  if (request.cores && !varied_core_counts(request.varied).empty()) {
+    usage_error("--cores and --vary core_count: both say how many cores there are");
+  }
+  if (request.mode == Mode::kPlain) usage_error("--vary: --mode plain counts no cycles; --mode checked does");
+  if (lanes != kChipLanes) usage_error("--vary: cycles are counted for --lanes 4 only");
+  if (request.tile) usage_error("--vary: cycles are not counted for one tile alone (--tile)");
+}
+
 std::uint32_t lanes_of(const RenderRequest& request, const Host& host) {
   return request.lanes.value_or(request.mode == Mode::kPlain ? host.lanes : kChipLanes);
 }
@@ -151,6 +172,8 @@ std::vector<Output> FrameOutputs::declared() const {
   if (ids) outputs.push_back({"--ids", *ids, OutputKind::kFloats});
   if (report) outputs.push_back({"--report", *report, OutputKind::kText});
   if (timeline) outputs.push_back({"--timeline", *timeline, OutputKind::kText});
+  if (sweep) outputs.push_back({"--sweep", *sweep, OutputKind::kText});
+  if (sweep_plot) outputs.push_back({"--sweep-plot", *sweep_plot, OutputKind::kText});
   return outputs;
 }
 
@@ -182,11 +205,13 @@ void check_request(const RenderRequest& request, const Host& host) {
     usage_error("--lanes: this host and this build (GRIDIRON_WIDE_LANES) have at most " + std::to_string(host.lanes) +
                 " lanes");
   }
+  check_sweep(request, lanes);
   if (request.seed && request.completion != sim::Completion::kRandom) usage_error("--seed: needs --completion random");
 }
 
 RenderPlan resolve(const RenderRequest& request, const KnownScene& scene, const Host& host) {
   check_request(request, host);
+  require_time(*request.scene.machine, request.varied);
   RenderPlan plan{.scene = request.scene,
                   .outputs = request.named_outputs(),
                   .has_depth = request.outputs.depth || request.depth_plane,
@@ -199,7 +224,8 @@ RenderPlan resolve(const RenderRequest& request, const KnownScene& scene, const 
                   .completion = request.completion,
                   .seed = request.seed.value_or(0),
                   .repeats = request.repeats,
-                  .has_bound = request.has_bound};
+                  .has_bound = request.has_bound,
+                  .varied = request.varied};
   const CountPair size = request.size.value_or(scene.size.value_or(kUsualPictureSize));
   plan.width = size.x;
   plan.height = size.y;

@@ -16,12 +16,13 @@
 #include "gridiron/device/layout_choice.h"
 #include "gridiron/scene/scene_request.h"
 #include "gridiron/scene/view.h"
+#include "gridiron/sweep/machine_sweep.h"
 
 namespace gridiron::tool {
 
 /// Files of a frame.
 struct FrameOutputs {
-  std::optional<std::filesystem::path> picture, depth, ids, report, timeline;
+  std::optional<std::filesystem::path> picture, depth, ids, report, timeline, sweep, sweep_plot;
 
   /// For declare_outputs().
   [[nodiscard]] std::vector<Output> declared() const;
@@ -44,8 +45,9 @@ struct RenderRequest {
   sim::Mode mode = sim::Mode::kChecked;
   sim::Completion completion = sim::Completion::kEarly;
   std::optional<std::uint64_t> seed;
-  std::uint32_t repeats = 1;  ///< the frame is built and rendered so often
-  bool has_bound = false;     ///< of its tiles, for its camera
+  std::uint32_t repeats = 1;      ///< the frame is built and rendered so often
+  bool has_bound = false;         ///< of its tiles, for its camera
+  std::vector<VariedKey> varied;  ///< of the machines of a sweep; none: no sweep
 
   /// Adds the picture's default name if none is given: INPUT's name with .png.
   [[nodiscard]] FrameOutputs named_outputs() const;
@@ -86,7 +88,8 @@ struct RenderPlan {
   sim::Completion completion = sim::Completion::kEarly;
   std::uint64_t seed = 0;
   std::uint32_t repeats = 1;
-  bool has_bound = false;  ///< of tiles, for the camera
+  bool has_bound = false;         ///< of tiles, for the camera
+  std::vector<VariedKey> varied;  ///< of the machines of a sweep
   Builder builder = Builder::kMaster;
 };
 
