@@ -237,8 +237,9 @@ TEST(Sweep, WhatCannotBeVariedIsRefused) {
       {plot + Words{"--vary", "core_count=2,2", "--vary", "clock_hz=1,2"},
        "--sweep-plot: the first key, 'core_count', is the axis, which needs two values"},
       {plot + cores + Words{"--vary", many}, "--sweep-plot: shows at most 16 curves"},
-      {plot + cores + Words{"--vary", "latency_cycles=1:.1 2:.1 3:.1 4:.1 5:.1 6:.1 7:.15 123456.789012345:.25", "--vary",
-                            "clock_hz=3200000001"},
+      {plot + cores +
+           Words{"--vary", "latency_cycles=1:.1 2:.1 3:.1 4:.1 5:.1 6:.1 7:.15 123456.789012345:.25", "--vary",
+                 "clock_hz=3200000001"},
        "--sweep-plot: the name of a curve is too long"},
       {cores + Words{"--sweep", "a.ply"}, "--sweep a.ply: is the input"},
       {cores + plot + Words{"--sweep", "./s.svg"}, "are the same file"},

@@ -29,13 +29,6 @@ struct OwnedMachine {
   MachineProfile profile{};
 };
 
-// The keys of a profile that a machine file has.
-std::vector<MachineKey> file_keys(MachineProfile& machine) {
-  std::vector<MachineKey> keys = machine_keys(machine);
-  std::erase_if(keys, [](const MachineKey& key) { return !key.is_in_files; });
-  return keys;
-}
-
 // Suggestions for an unknown machine: the nearest name and all names.
 std::string words_of_built_in_machines(std::string_view name) {
   std::string list;

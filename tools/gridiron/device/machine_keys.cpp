@@ -223,6 +223,12 @@ std::vector<MachineKey> machine_keys(MachineProfile& machine) {
   return keys;
 }
 
+std::vector<MachineKey> file_keys(MachineProfile& machine) {
+  std::vector<MachineKey> keys = machine_keys(machine);
+  std::erase_if(keys, [](const MachineKey& key) { return !key.is_in_files; });
+  return keys;
+}
+
 std::string text_of(double value) {
   std::string result = shortest_text(value);
   // Shortens 3.2e+09 to 3.2e9.

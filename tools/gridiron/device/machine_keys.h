@@ -23,6 +23,9 @@ struct MachineKey {
 /// @returns every number of `machine`, in the order of machine files and JSON.
 [[nodiscard]] std::vector<MachineKey> machine_keys(sim::MachineProfile& machine);
 
+/// @returns those of them that machine files have.
+[[nodiscard]] std::vector<MachineKey> file_keys(sim::MachineProfile& machine);
+
 /// Sets the number of `key` to what `text`, a value of a machine file, says.
 /// @returns what is wrong with the text, with the name or the range of the key; nothing if the number is set.
 [[nodiscard]] std::optional<std::string> set_number(const MachineKey& key, std::string_view text);

@@ -33,15 +33,10 @@ std::string_view obstacle_of(std::string_view key) {
   if (key == "main_memory_bytes" || key == "local_store_bytes" || key == "queue_depth") {
     return " changes the frame itself, not only its time: render it for each value, with --machine";
   }
-  if (key.starts_with("master.") || key.starts_with("pass_"))
+  if (key.starts_with("master.") || key.starts_with("pass_")) {
     return " is of builds, which a frame's time does not contain";
+  }
   return "";
-}
-
-std::vector<MachineKey> keys_of_files(sim::MachineProfile& machine) {
-  std::vector<MachineKey> keys = machine_keys(machine);
-  std::erase_if(keys, [](const MachineKey& key) { return !key.is_in_files; });
-  return keys;
 }
 
 const MachineKey& find_key(const std::vector<MachineKey>& keys, std::string_view name) {
@@ -104,7 +99,7 @@ VariedKey parse_varied_key(const std::string& text) {
   }
   VariedKey varied{text.substr(0, equals), {}};
   sim::MachineProfile scratch = sim::machine_profiles().front();
-  const std::vector<MachineKey> keys = keys_of_files(scratch);
+  const std::vector<MachineKey> keys = file_keys(scratch);
   const MachineKey& key = find_key(keys, varied.name);
   if (const std::string_view obstacle = obstacle_of(key.name); !obstacle.empty()) {
     usage_error("--vary: " + in_quotes(key.name) + std::string(obstacle));
@@ -121,7 +116,7 @@ VariedKey parse_varied_key(const std::string& text) {
 std::vector<std::string> keys_of_replays() {
   sim::MachineProfile scratch = sim::machine_profiles().front();
   std::vector<std::string> names;
-  for (const MachineKey& key : keys_of_files(scratch)) {
+  for (const MachineKey& key : file_keys(scratch)) {
     if (obstacle_of(key.name).empty()) names.push_back(key.name);
   }
   return names;
@@ -166,7 +161,7 @@ std::vector<std::uint32_t> varied_core_counts(std::span<const VariedKey> varied)
 
 SweptMachine::SweptMachine(const sim::MachineProfile& base, std::span<const VariedKey> varied)
     : machine_(base), varied_(varied) {
-  const std::vector<MachineKey> keys = keys_of_files(machine_);
+  const std::vector<MachineKey> keys = file_keys(machine_);
   for (const VariedKey& key : varied) keys_.push_back(find_key(keys, key.name));
 }
 
@@ -179,8 +174,9 @@ const sim::MachineProfile& SweptMachine::at(std::size_t i) {
 }
 
 void require_time(const sim::MachineProfile& base, std::span<const VariedKey> varied) {
+  if (varied.empty()) return;
   SweptMachine machine(base, varied);
-  for (std::size_t i = 0; !varied.empty() && i < machine_count(varied); ++i) {
+  for (std::size_t i = 0; i < machine_count(varied); ++i) {
     if (!sim::counts_instructions(machine.at(i))) continue;
     usage_error("--vary: the prices of " + std::string(base.name) +
                 " are instructions, so that it has no frames a second");
