@@ -125,8 +125,8 @@ struct ChipResult {
 /// rejects store, tile width, packet width, shading, mode and lanes, or this host cannot run it), kBadParameter (limits
 /// of no possible platform, tiles outside of the frame or not rising, no threads, spill memory that is misaligned, not
 /// allocated or part of the picture), kAborted (by the options, or by a shortage of the host, which the result names),
-/// and the errors of the kernel or of a broken rule. If several tiles fail, the lowest one is reported with its violations, for
-/// any number of threads. An exception of options.progress leaves this call once all threads have ended.
+/// and the errors of the kernel or of a broken rule. If several tiles fail, the lowest is reported with its violations,
+/// for any number of threads. An exception of options.progress leaves this call once all threads have ended.
 [[nodiscard]] ChipResult render_frame(SimMemory& memory, MainAddress frame, const ChipOptions& options);
 
 /// @returns the result of a frame that a shortage of the host has ended.

@@ -1,7 +1,6 @@
 // Machine sweep. SPDX-License-Identifier: Apache-2.0
 #include "machine_sweep.h"
 
-#include <gridiron/sim/engine_work.h>
 #include <gridiron/sim/host_workers.h>
 #include <report/report.h>
 
@@ -20,6 +19,7 @@
 #include "base/value_bytes.h"
 #include "base/words.h"
 #include "files/interrupt.h"
+#include "shared_traces.h"
 
 namespace gridiron::tool {
 namespace {
@@ -46,48 +46,6 @@ const MachineKey& find_key(const std::vector<MachineKey>& keys, std::string_view
                 "; 'gridiron machines --help' lists them");
   }
   return *known;
-}
-
-// Rank 0 gives all ranks its trace, some tiles at a time, so that there are never two whole copies on it.
-void share_trace(sim::FrameTrace& trace) {
-  constexpr std::size_t kPieceBytes = std::size_t{64} << 20;
-  Ranks& all = ranks();
-  if (all.count() == 1) return;
-  Bytes bytes;
-  if (all.is_first()) {
-    ByteWriter writer;
-    writer.add(trace.prologue.packed);
-    writer.add(trace.epilogue.packed);
-    writer.add(std::uint64_t{trace.tiles.size()});
-    writer.add(trace.output_depth);
-    writer.add(trace.engine->id);
-    writer.add(trace.is_middle_out);
-    bytes = writer.take();
-  }
-  all.broadcast(bytes);
-  if (!all.is_first()) {
-    ByteReader reader(bytes);
-    trace.prologue.tile_id = trace.epilogue.tile_id = sim::kNoTile;
-    reader.take(trace.prologue.packed);
-    reader.take(trace.epilogue.packed);
-    trace.tiles.resize(reader.take<std::uint64_t>());
-    reader.take(trace.output_depth);
-    trace.engine = sim::core_engine(reader.take<std::uint32_t>());  // an address means nothing to another process
-    reader.take(trace.is_middle_out);
-  }
-  for (std::size_t tile = 0; tile < trace.tiles.size();) {
-    ByteWriter writer;
-    for (std::size_t i = tile; all.is_first() && i < trace.tiles.size() && writer.size() < kPieceBytes; ++i) {
-      writer.add(trace.tiles[i].tile_id);
-      writer.add(trace.tiles[i].packed);
-    }
-    bytes = writer.take();
-    all.broadcast(bytes);
-    for (ByteReader reader(bytes); !reader.is_empty(); ++tile) {
-      reader.take(trace.tiles[tile].tile_id);
-      reader.take(trace.tiles[tile].packed);
-    }
-  }
 }
 
 }  // namespace
@@ -200,8 +158,9 @@ SweepFigures figures_of(const sim::FrameTiming& timing) {
 
 std::vector<SweepFigures> replay_sweep(sim::FrameTrace& trace, const sim::MachineProfile& base,
                                        std::span<const VariedKey> varied, std::uint32_t threads, bool quiet) {
-  share_trace(trace);
   Ranks& all = ranks();
+  std::optional<SharedTraces> shared;
+  if (all.count() > 1) shared.emplace(trace);
   const std::size_t count = machine_count(varied);
   const auto own_count = static_cast<std::size_t>(all.share_of(count));
   std::vector<SweepFigures> figures(count);
@@ -217,7 +176,8 @@ std::vector<SweepFigures> replay_sweep(sim::FrameTrace& trace, const sim::Machin
       if (k >= own_count) return;
       stop_if_interrupted();
       const std::size_t i = k * all.count() + all.rank();
-      figures[i] = figures_of(sim::replay(trace, machine.at(i), {}));
+      const sim::MachineProfile& on = machine.at(i);
+      figures[i] = figures_of(shared ? shared->replay(on) : sim::replay(trace, on, {}));
       const std::lock_guard lock(mutex);
       all.attend();
       progress.update(++done, own_count);

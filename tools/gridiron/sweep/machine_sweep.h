@@ -75,7 +75,7 @@ struct SweepFigures {
 
 /// Replays the trace on all machines, which ranks and threads divide among them. All ranks call it.
 ///
-/// @param trace  of rank 0; on other ranks an empty one, which becomes the same. @param base  what is not varied.
+/// @param trace  of rank 0, which loses it where there are several ranks. @param base  what is not varied.
 /// @returns      the figures, by machine, on every rank. Errors: those of Ranks and stop_if_interrupted().
 [[nodiscard]] std::vector<SweepFigures> replay_sweep(sim::FrameTrace& trace, const sim::MachineProfile& base,
                                                      std::span<const VariedKey> varied, std::uint32_t threads,
