@@ -80,12 +80,12 @@ void exchange_results(std::size_t count, const std::function<Bytes(std::size_t)>
   Ranks& all = ranks();
   if (all.count() == 1) return;
   ByteWriter own;
-  for (std::size_t i = all.rank(); i < count; i += all.count()) own.add(pack(i));
+  for (std::uint64_t k = 0; k < all.share_of(count); ++k) own.add(pack(all.piece(k)));
   const std::vector<Bytes> results = all.exchange(own.take());
   for (std::uint32_t rank = 0; rank < all.count(); ++rank) {
     if (rank == all.rank()) continue;
     ByteReader reader(results[rank]);
-    for (std::size_t i = rank; i < count; i += all.count()) {
+    for (std::uint64_t k = 0, i = rank; i < count; i = piece_of_rank(++k, rank, all.count())) {
       Bytes bytes;
       reader.take(bytes);
       unpack(i, bytes);

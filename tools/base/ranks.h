@@ -14,6 +14,17 @@
 
 namespace gridiron::tool {
 
+/// Of every `count` pieces of work each rank has one, each time the one before that of the last time: where pieces of
+/// two kinds take turns, no rank has all of one kind. No rank has more than one piece above an even share.
+/// @returns the rank that has piece `i`.
+[[nodiscard]] constexpr std::uint32_t rank_of_piece(std::uint64_t i, std::uint32_t count) {
+  return static_cast<std::uint32_t>((i % count + i / count) % count);
+}
+/// @returns the k-th piece of a rank, rising with k. The first is the one with its number.
+[[nodiscard]] constexpr std::uint64_t piece_of_rank(std::uint64_t k, std::uint32_t rank, std::uint32_t count) {
+  return k * count + (rank + count - k % count) % count;
+}
+
 struct RankMessage {
   std::uint32_t rank = 0;  ///< that sent it
   Bytes bytes;
@@ -35,11 +46,12 @@ class Ranks {
 
   /// Rank 0 prints and writes all files.
   [[nodiscard]] bool is_first() const { return rank() == 0; }
-  /// Whether this rank does piece `i`: no rank has more than one piece above an even share.
-  [[nodiscard]] bool has(std::uint64_t i) const { return i % count() == rank(); }
+  /// @returns the k-th piece of this rank.
+  [[nodiscard]] std::uint64_t piece(std::uint64_t k) const { return piece_of_rank(k, rank(), count()); }
   /// @returns pieces of this rank, of so many.
   [[nodiscard]] std::uint64_t share_of(std::uint64_t pieces) const {
-    return pieces / count() + (rank() < pieces % count() ? 1 : 0);
+    const std::uint64_t rounds = pieces / count();
+    return rounds + (piece(rounds) < pieces ? 1 : 0);
   }
 
   /// Of another rank than 0: sends a message. Waits until the one before has left, so that one at most is kept.
@@ -90,7 +102,7 @@ class RanksInUse {
   RanksInUse& operator=(const RanksInUse&) = delete;
 };
 
-/// The results of pieces that were divided by Ranks::has(). On return every rank has those of all.
+/// The results of pieces that were divided by Ranks::piece(). On return every rank has those of all.
 /// @param pack    @returns the result of an own piece as bytes.
 /// @param unpack  takes the result of another rank's piece.
 void exchange_results(std::size_t count, const std::function<Bytes(std::size_t)>& pack,

@@ -41,7 +41,7 @@ void share_work(std::uint32_t threads, std::size_t count, const std::function<vo
   if (ranks.count() == 1) return share_work(threads, count, work);
   std::mutex mutex;
   share_work(threads, static_cast<std::size_t>(ranks.share_of(count)), [&](std::size_t k) {
-    work(k * ranks.count() + ranks.rank());
+    work(ranks.piece(k));
     const std::lock_guard lock(mutex);
     ranks.attend();
   });

@@ -137,8 +137,8 @@ void Animation::render() {
   };
   FrameArrivals arrivals(take);
   if (!missing.empty()) maker_->begin();
-  for (std::size_t k = 0; k < missing.size(); k += ranks().count()) {
-    const std::size_t i = missing[k];
+  for (std::uint64_t k = 0; k < ranks().share_of(missing.size()); ++k) {
+    const std::size_t i = missing[ranks().piece(k)];
     progress.wipe();  // notes may come
     take(i, maker_->make(i, request_.timeline && i == 0, [&](double share) {
       arrivals.take_arrived();

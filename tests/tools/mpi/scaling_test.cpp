@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/failure.h"
+#include "base/ranks.h"
 #include "scaling_model.h"
 
 namespace gridiron::scaling {
@@ -52,7 +53,7 @@ TEST(ScalingModel, PiecesThatAreTooFewOrUneven) {
   EXPECT_DOUBLE_EQ(few.seconds, 1);
   EXPECT_EQ(few.limit, "too few pieces");
   Costs costs = even(8, 1);
-  costs.pieces[5].seconds = 5;  // rank 1 of 2 has 1, 3, 5, 7
+  costs.pieces[5].seconds = 5;  // rank 1 of 2 has 1, 2, 5, 6
   const Prediction uneven = predict(costs, kFree, 2);
   EXPECT_DOUBLE_EQ(uneven.seconds, 8);
   EXPECT_EQ(uneven.limit, "uneven shares");
@@ -106,7 +107,9 @@ TEST(ScalingModel, MessagesHoldPiecesUpToANumberOrATime) {
   EXPECT_DOUBLE_EQ(seconds(100, 0), 8);  // one message of four, at 4 s
   costs.pieces.assign(2, {0, 0});
   costs.pieces.resize(8, {1, 0});
-  for (std::size_t i = 0; i < 8; i += 2) costs.pieces[i].seconds = 0;  // rank 0 waits; rank 1 works 3 s
+  for (std::size_t i = 0; i < 8; ++i) {  // rank 0 waits; rank 1 works 3 s
+    if (tool::rank_of_piece(i, 2) == 0) costs.pieces[i].seconds = 0;
+  }
   EXPECT_DOUBLE_EQ(seconds(1, 0), 4);    // the last comes at 3 s
   EXPECT_DOUBLE_EQ(seconds(100, 0), 7);  // all come at 3 s
   EXPECT_DOUBLE_EQ(seconds(2, 0), 5);    // two of them

@@ -120,8 +120,8 @@ void render_frames_for_first(const AnimateRequest& request) {
     since_part = {};
     all.tell_first(bytes_of_part(part));
   };
-  for (std::size_t k = all.rank(); k < numbers.size(); k += all.count()) {
-    const std::size_t i = numbers[k];
+  for (std::uint64_t k = 0; k < all.share_of(numbers.size()); ++k) {
+    const std::size_t i = numbers[all.piece(k)];
     MadeFrame made = maker->make(i, request.timeline && i == 0, tell_part);
     made.notes = take_notes();
     all.tell_first(bytes_of_frame(i, made));

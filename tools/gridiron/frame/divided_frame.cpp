@@ -115,7 +115,7 @@ class Division {
     for (std::uint32_t begin = 0; begin < own_count; begin += static_cast<std::uint32_t>(tiles.size())) {
       tiles.clear();
       for (std::uint32_t k = begin; k < std::min(own_count, begin + at_once); ++k) {
-        tiles.push_back(tile_of_claim(k * ranks().count() + ranks().rank()));
+        tiles.push_back(tile_of_claim(static_cast<std::uint32_t>(ranks().piece(k))));
       }
       std::ranges::sort(tiles);
       const Stopwatch stopwatch;

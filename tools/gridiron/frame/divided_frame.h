@@ -21,8 +21,8 @@ struct DividedFrame {
   std::optional<sim::FrameTiming> timing;  ///< where the traces were replayed as they came, and are gone
 };
 
-/// As render_on_chip(), by all ranks, each of which has prepared the frame. Rank r of N renders the tiles of the claims
-/// c with c mod N = r. A single tile (RenderPlan::tile) is rendered by rank 0 alone.
+/// As render_on_chip(), by all ranks, each of which has prepared the frame. Pieces are claims of
+/// tiles (piece_of_rank()). A single tile (RenderPlan::tile) is rendered by rank 0 alone.
 ///
 /// A rank renders and sends as many tiles at a time as take it kSecondsAtOnce, but no more than kTilesAtOnce. That
 /// tiles of several such parts overlap in main memory is not checked.

@@ -15,7 +15,9 @@ namespace {
 
 std::vector<std::uint32_t> bands_of_rank(std::uint32_t rank, std::uint32_t band_count) {
   std::vector<std::uint32_t> bands;
-  for (std::uint32_t band = rank; band < band_count; band += ranks().count()) bands.push_back(band);
+  for (std::uint64_t k = 0, band = rank; band < band_count; band = piece_of_rank(++k, rank, ranks().count())) {
+    bands.push_back(static_cast<std::uint32_t>(band));
+  }
   return bands;
 }
 

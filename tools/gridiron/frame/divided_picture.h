@@ -12,7 +12,7 @@
 
 namespace gridiron::tool {
 
-/// Of rank 0: encode_picture(), of whose bands (png_file.h) rank r of N encodes those with i mod N = r.
+/// Of rank 0: encode_picture(), whose bands (png_file.h) are divided among the ranks.
 /// @param threads  of this rank. Errors: those of encode_picture(), and of Ranks.
 [[nodiscard]] std::vector<std::byte> encode_divided(const Picture<std::uint32_t>& picture,
                                                     const std::filesystem::path& path, std::uint32_t threads);

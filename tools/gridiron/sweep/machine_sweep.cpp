@@ -175,7 +175,7 @@ std::vector<SweepFigures> replay_sweep(sim::FrameTrace& trace, const sim::Machin
       const std::size_t k = next++;
       if (k >= own_count) return;
       stop_if_interrupted();
-      const std::size_t i = k * all.count() + all.rank();
+      const auto i = static_cast<std::size_t>(all.piece(k));
       const sim::MachineProfile& on = machine.at(i);
       figures[i] = figures_of(shared ? shared->replay(on) : sim::replay(trace, on, {}));
       const std::lock_guard lock(mutex);

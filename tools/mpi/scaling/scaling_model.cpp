@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/failure.h"
+#include "base/ranks.h"
 #include "base/words.h"
 
 namespace gridiron::scaling {
@@ -66,12 +67,13 @@ struct Sender {
 std::vector<Message> messages_of(const Costs& costs, std::uint32_t rank, std::uint32_t ranks) {
   std::vector<Message> messages;
   Message gathered;
-  for (std::size_t i = rank; i < costs.pieces.size(); i += ranks) {
+  for (std::uint64_t k = 0, i = rank; i < costs.pieces.size(); i = tool::piece_of_rank(++k, rank, ranks)) {
     gathered.work += costs.pieces[i].seconds;
     gathered.bytes += costs.pieces[i].bytes;
     ++gathered.pieces;
     const bool is_long = costs.message_seconds > 0 && gathered.work >= costs.message_seconds;
-    if (gathered.pieces >= costs.message_pieces || is_long || i + ranks >= costs.pieces.size()) {
+    if (gathered.pieces >= costs.message_pieces || is_long ||
+        tool::piece_of_rank(k + 1, rank, ranks) >= costs.pieces.size()) {
       messages.push_back(std::exchange(gathered, {}));
     }
   }
@@ -92,7 +94,7 @@ class Gathering {
 
   // @returns when all pieces are there.
   double run() {
-    for (std::size_t i = 0; i < costs_.pieces.size(); i += ranks_) {
+    for (std::uint64_t k = 0, i = 0; i < costs_.pieces.size(); i = tool::piece_of_rank(++k, 0, ranks_)) {
       now_ += costs_.pieces[i].seconds + costs_.own_take_seconds;
       take_arrived();
     }
@@ -165,7 +167,9 @@ Costs evenly_divided(Costs costs, std::uint32_t ranks) {
   double all = 0, most = 0;
   for (std::uint32_t rank = 0; rank < std::min<std::size_t>(ranks, costs.pieces.size()); ++rank) {
     double own = 0;
-    for (std::size_t i = rank; i < costs.pieces.size(); i += ranks) own += costs.pieces[i].seconds;
+    for (std::uint64_t k = 0, i = rank; i < costs.pieces.size(); i = tool::piece_of_rank(++k, rank, ranks)) {
+      own += costs.pieces[i].seconds;
+    }
     all += own;
     most = std::max(most, own);
   }
