@@ -14,15 +14,21 @@
 
 namespace gridiron::tool {
 
-/// Of every `count` pieces of work each rank has one, each time the one before that of the last time: where pieces of
-/// two kinds take turns, no rank has all of one kind. No rank has more than one piece above an even share.
+/// Of every `count` pieces of work, a round, each rank has one, and no rank more than one piece above an even share.
+/// From round to round they move on by a golden section of the ranks, so that no rank has all pieces of one kind where
+/// kinds take turns, as halves and columns of a picture do.
+/// @returns by how many ranks the pieces of a round are moved on; 0 in the first.
+[[nodiscard]] constexpr std::uint32_t turn_of_round(std::uint64_t round, std::uint32_t count) {
+  const auto part = static_cast<std::uint32_t>(round * 0x9E3779B9u);  // of 2^32
+  return static_cast<std::uint32_t>(std::uint64_t{part} * count >> 32);
+}
 /// @returns the rank that has piece `i`.
 [[nodiscard]] constexpr std::uint32_t rank_of_piece(std::uint64_t i, std::uint32_t count) {
-  return static_cast<std::uint32_t>((i % count + i / count) % count);
+  return static_cast<std::uint32_t>((i % count + turn_of_round(i / count, count)) % count);
 }
 /// @returns the k-th piece of a rank, rising with k. The first is the one with its number.
 [[nodiscard]] constexpr std::uint64_t piece_of_rank(std::uint64_t k, std::uint32_t rank, std::uint32_t count) {
-  return k * count + (rank + count - k % count) % count;
+  return k * count + (rank + count - turn_of_round(k, count)) % count;
 }
 
 struct RankMessage {

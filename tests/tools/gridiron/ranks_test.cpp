@@ -29,13 +29,17 @@ TEST(Ranks, HaveEvenShares) {
   }
 }
 
-// Claims of tiles alternate between the upper and the lower half of a picture.
-TEST(Ranks, HaveEqualPartsOfTwoKindsThatTakeTurns) {
-  for (const std::uint32_t count : {2u, 4u, 6u}) {
-    for (std::uint32_t rank = 0; rank < count; ++rank) {
-      int odd = 0;
-      for (std::uint64_t k = 0; k < 60; ++k) odd += static_cast<int>(piece_of_rank(k, rank, count) % 2);
-      EXPECT_EQ(odd, 30) << rank << " of " << count;
+// Claims of tiles alternate between the upper and the lower half of a picture, and return to a column.
+TEST(Ranks, HaveLikePartsOfKindsThatTakeTurns) {
+  for (const std::uint32_t count : {2u, 4u, 6u, 16u}) {
+    for (const std::uint64_t kinds : {2u, 8u, 24u, 48u}) {
+      for (std::uint32_t rank = 0; rank < count; ++rank) {
+        std::vector<int> of_kind(kinds);
+        for (std::uint64_t k = 0; k < 50 * kinds; ++k) ++of_kind[piece_of_rank(k, rank, count) % kinds];
+        for (const int pieces : of_kind) {
+          EXPECT_NEAR(pieces, 50, 15) << rank << " of " << count << " ranks, " << kinds << " kinds";
+        }
+      }
     }
   }
 }
