@@ -251,6 +251,7 @@ void render_for_first(const RenderRequest& request) {
     if (repeat == 0 || !is_packed) share_frame(frame);
     (void)render_divided(*frame, plan, nullptr, [](std::uint32_t, std::uint32_t) {});
   }
+  frame.reset();
   sim::FrameTrace trace;
   (void)sweep(request, plan, trace);
   encode_for_first(plan.threads);

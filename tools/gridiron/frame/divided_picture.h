@@ -1,5 +1,5 @@
 // Divided picture: a picture encoded by all ranks.
-// Memory: on rank 0 the picture, another rank's part of it at a time, and the file. Threads: starts its own.
+// Memory: on rank 0 the picture, sixteen bands of it for another rank, and the file. Threads: starts its own.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
