@@ -41,8 +41,8 @@ struct Network {
 /// begins a comment. Errors: tool::Failure (kBadInput) with the line.
 [[nodiscard]] Costs read_costs(const std::string& file, const std::string& text);
 
-/// @returns seconds of the whole command. Ranks have the pieces of tool::piece_of_rank(); each rank has one message under
-/// way at most; rank 0 takes what has arrived between two pieces of its own. A broadcast is a tree of whole copies.
+/// @returns seconds of the whole command. Ranks have the pieces of tool::piece_of_rank(); each rank has one message
+/// under way at most; rank 0 takes what has arrived between two pieces of its own. A broadcast is a tree of whole copies.
 [[nodiscard]] double simulate(const Costs& costs, const Network& network, std::uint32_t ranks);
 
 struct Prediction {
