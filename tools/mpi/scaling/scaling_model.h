@@ -42,7 +42,7 @@ struct Network {
 [[nodiscard]] Costs read_costs(const std::string& file, const std::string& text);
 
 /// @returns seconds of the whole command. Ranks have the pieces of tool::piece_of_rank(); each rank has one message
-/// under way at most; rank 0 takes what has arrived between two pieces of its own. A broadcast is a tree of whole copies.
+/// under way at most; rank 0 takes what has arrived between two pieces of its own. A broadcast is a tree of copies.
 [[nodiscard]] double simulate(const Costs& costs, const Network& network, std::uint32_t ranks);
 
 struct Prediction {
