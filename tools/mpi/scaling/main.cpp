@@ -3,9 +3,10 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/failure.h"
@@ -35,11 +36,27 @@ double positive(const char* text, const char* name) {
   return number;
 }
 
+// Of FILE, or of FILE*N.
+scaling::Costs costs_of(const std::string& argument) {
+  const std::size_t star = argument.rfind('*');
+  const std::string path = argument.substr(0, star);
+  const tool::InputFile file = tool::read_input_file(path, "expected a file of costs");
+  scaling::Costs costs =
+      scaling::read_costs(path, {reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()});
+  if (star == std::string::npos) return costs;
+  const std::optional<std::uint32_t> times = tool::parse_count(argument.substr(star + 1));
+  if (!times || *times == 0) tool::usage_error(tool::in_quotes(argument) + ": how often, behind the star?");
+  const std::vector<scaling::Piece> once = std::exchange(costs.pieces, {});
+  for (std::uint32_t i = 0; i < *times; ++i) costs.pieces.insert(costs.pieces.end(), once.begin(), once.end());
+  costs.name += ", " + std::to_string(*times) + " times";
+  return costs;
+}
+
 void run(int count, char** values) {
   if (count < 5) {
     tool::usage_error(
         "gridiron_mpi_scaling OUTPUT LATENCY_SECONDS BYTES_PER_SECOND COSTS...\n"
-        "writes OUTPUT.csv and OUTPUT.svg");
+        "writes OUTPUT.csv and OUTPUT.svg; COSTS is FILE, or FILE*N, whose pieces come N times");
   }
   const std::string output = values[1];
   const scaling::Network network{positive(values[2], "LATENCY_SECONDS"), positive(values[3], "BYTES_PER_SECOND")};
@@ -52,9 +69,7 @@ void run(int count, char** values) {
                         .x_ticks = {1, 2, 4, 16, 64, 256, 1024, 4096}};
   std::string table = "command,ranks,seconds,speed_up,efficiency,limit\n";
   for (int i = 4; i < count; ++i) {
-    const tool::InputFile file = tool::read_input_file(values[i], "expected a file of costs");
-    const std::string text(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
-    const scaling::Costs costs = scaling::read_costs(values[i], text);
+    const scaling::Costs costs = costs_of(values[i]);
     plot::Series series{.name = costs.name, .points = {}};
     std::uint32_t last_good = 1;
     for (const std::uint32_t ranks : kRanks) {
