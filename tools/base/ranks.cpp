@@ -22,7 +22,8 @@ class SingleRank final : public Ranks {
   [[nodiscard]] Bytes hear() override { throw Failure(ExitCode::kCheckFailed, kToItself); }
   void attend() override {}
   void broadcast(Bytes&) override {}
-  void share_bytes(std::span<std::byte>, const std::function<void(std::uint64_t, std::span<std::byte>)>&) override {}
+  void share_bytes(std::span<std::byte>, const char*,
+                   const std::function<void(std::uint64_t, std::span<std::byte>)>&) override {}
   [[nodiscard]] std::uint32_t usual_threads(std::uint32_t host_threads) const override { return host_threads; }
 };
 

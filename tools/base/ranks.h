@@ -76,11 +76,11 @@ class Ranks {
   virtual void broadcast(Bytes& bytes) = 0;
 
   /// Gives all ranks the bytes of rank 0 so that they lie once in the memory of each node. All call it.
-  /// @param bytes  of rank 0; on others as many that are overwritten.
+  /// @param bytes  of rank 0; on others as many that are overwritten. @param what  they are, for messages: "the scene".
   /// @param place  called for one piece after another, which lies in memory that the ranks of the node share and that
   ///               is gone when this call returns: the caller maps it, or copies it to `bytes`, from `begin` on. Not
   ///               called where a node has one rank.
-  virtual void share_bytes(std::span<std::byte> bytes,
+  virtual void share_bytes(std::span<std::byte> bytes, const char* what,
                            const std::function<void(std::uint64_t begin, std::span<std::byte> shared)>& place) = 0;
 
   /// Threads that this rank should use by default. @param host_threads  of the whole host.

@@ -301,7 +301,9 @@ void run_command(const RenderRequest& request) {
   if (outputs.timeline) files.add(*outputs.timeline, timeline_json(timing, *plan.scene.machine));
   if (outputs.sweep) files.add(*outputs.sweep, sweep_csv(plan.varied, swept));
   if (outputs.sweep_plot) {
-    const std::string title = input.path.filename().string() + " on " + std::string(plan.scene.machine->name);
+    const std::string title = input.path.filename().string() + ", " + std::to_string(plan.width) + "x" +
+                              std::to_string(plan.height) + ", " + std::string(plan.scene.configuration->name) + ", " +
+                              std::string(plan.scene.machine->name);
     files.add(*outputs.sweep_plot, sweep_svg(plan.varied, swept, title));
   }
   files.commit_at_end();

@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "base/kept_notes.h"
+#include "base/numbers.h"
 #include "files/command_files.h"
 #include "files/overdue_exit.h"
 #include "gridiron/program.h"
@@ -50,9 +52,24 @@ std::optional<std::string> costs_file(int& count, char**& values) {
   return file;
 }
 
+// A launcher of another MPI starts processes of which each takes itself for the only one: all would do the whole work,
+// and write the same files.
+void require_own_launcher(const MpiRanks& ranks) {
+  if (ranks.count() > 1 || std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) return;
+  for (const char* const name : {"PMI_SIZE", "SLURM_STEP_NUM_TASKS"}) {
+    const char* const value = std::getenv(name);
+    const std::optional<std::uint32_t> tasks = value != nullptr ? parse_count(value) : std::nullopt;
+    if (!tasks || *tasks <= 1) continue;
+    throw Failure(ExitCode::kUsage, "the launcher started " + std::to_string(*tasks) + " processes (" + name +
+                                        "), of which each is alone: it serves another MPI than that of this program"
+                                        " (with srun: --mpi=pmix)");
+  }
+}
+
 // A command that failed anywhere has failed everywhere.
 ProgramEnd run(MpiRanks& ranks, std::optional<MeasuredRanks>& measured, int count, const char* const* values) {
   try {
+    require_own_launcher(ranks);
     ranks.require_alike(GRIDIRON_MPI_VERSION, joined(count, values));
     ProgramEnd end = run_program(count, values);
     if (end.code == ExitCode::kDone && measured) measured->write();

@@ -69,10 +69,10 @@ void MeasuredRanks::broadcast(Bytes& bytes) {
   end("broadcast", bytes.size());
 }
 
-void MeasuredRanks::share_bytes(std::span<std::byte> bytes,
+void MeasuredRanks::share_bytes(std::span<std::byte> bytes, const char* what,
                                 const std::function<void(std::uint64_t begin, std::span<std::byte> shared)>& place) {
   begin();
-  ranks_.share_bytes(bytes, place);
+  ranks_.share_bytes(bytes, what, place);
   end("share", bytes.size());
 }
 

@@ -25,7 +25,7 @@ class MeasuredRanks final : public Ranks {
   [[nodiscard]] Bytes hear() override;
   void attend() override;
   void broadcast(Bytes& bytes) override;
-  void share_bytes(std::span<std::byte> bytes,
+  void share_bytes(std::span<std::byte> bytes, const char* what,
                    const std::function<void(std::uint64_t begin, std::span<std::byte> shared)>& place) override;
   [[nodiscard]] std::uint32_t usual_threads(std::uint32_t host) const override { return ranks_.usual_threads(host); }
 

@@ -62,14 +62,14 @@ std::uint32_t threads_of(MPI_Comm node, int ranks_on_node) {
 }
 
 // A page that the file system of shared memory does not have ends the process by SIGBUS.
-void require_shared_memory(std::uint64_t bytes) {
+void require_shared_memory(std::uint64_t bytes, const char* what) {
   struct statvfs state {};
   if (::statvfs("/dev/shm", &state) != 0) return;  // MPI takes another one
   const std::uint64_t free_bytes = std::uint64_t{state.f_bavail} * state.f_frsize;
   if (free_bytes >= bytes) return;
-  throw Failure(ExitCode::kBadInput, "the scene takes " + words_of_bytes(bytes) +
-                                         " of memory that the ranks of a node share; /dev/shm has " +
-                                         words_of_bytes(free_bytes));
+  throw Failure(ExitCode::kBadInput, std::string(what) + " would take " + words_of_bytes(bytes) +
+                                         " of memory that the ranks of " + name_of_node() + " share; /dev/shm has " +
+                                         words_of_bytes(free_bytes) + " left");
 }
 
 }  // namespace
@@ -260,7 +260,7 @@ void MpiRanks::meet_on_node() {
   wait_for(request);
 }
 
-void MpiRanks::share_bytes(std::span<std::byte> bytes,
+void MpiRanks::share_bytes(std::span<std::byte> bytes, const char* what,
                            const std::function<void(std::uint64_t begin, std::span<std::byte> shared)>& place) {
   flush();
   const bool is_leader = rank_on_node_ == 0;
@@ -268,7 +268,7 @@ void MpiRanks::share_bytes(std::span<std::byte> bytes,
     broadcast_pieces(bytes, leaders_);
     return;
   }
-  if (is_leader) require_shared_memory(bytes.size());
+  if (is_leader) require_shared_memory(bytes.size(), what);
   meet_on_node();
   // The leader has all pages of the window, and one more, so that the bytes begin on a page as `bytes` may.
   const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));

@@ -30,7 +30,7 @@ class MpiRanks final : public Ranks {
   [[nodiscard]] Bytes hear() override;
   void attend() override;
   void broadcast(Bytes& bytes) override;
-  void share_bytes(std::span<std::byte> bytes,
+  void share_bytes(std::span<std::byte> bytes, const char* what,
                    const std::function<void(std::uint64_t begin, std::span<std::byte> shared)>& place) override;
   [[nodiscard]] std::uint32_t usual_threads(std::uint32_t) const override { return threads_; }
 

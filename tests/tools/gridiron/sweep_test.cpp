@@ -200,7 +200,7 @@ TEST(Sweep, WhatCannotBeVariedIsRefused) {
   const Words table = {"--sweep", "s.csv"}, plot = {"--sweep-plot", "s.svg"};
   const std::pair<Words, std::string> values[] = {
       {{"core_count"}, "--vary: 'core_count' is not KEY=VALUE,VALUE,... with a key of machine files"},
-      {{"core_cuont=1"}, "--vary: unknown key 'core_cuont'; did you mean core_count?"},
+      {{"core_cuont=1"}, "--vary: unknown key 'core_cuont' ('gridiron machines --help' lists them); did you mean core_count?"},
       {{"work_cycles.wait=1"}, "--vary: unknown key 'work_cycles.wait'"},
       {{"core_count="}, "--vary core_count: 'core_count' has no value"},
       {{"core_count=1,,2"}, "--vary core_count: 'core_count' has no value"},

@@ -52,7 +52,7 @@ void exchange(MpiRanks& ranks) {
   }
 
   std::size_t shared_bytes = 0;
-  ranks.share_bytes(bytes, [&shared_bytes](std::uint64_t begin, std::span<std::byte> shared) {
+  ranks.share_bytes(bytes, "a message", [&shared_bytes](std::uint64_t begin, std::span<std::byte> shared) {
     require_same(shared, static_cast<std::size_t>(begin), "shared memory");
     shared_bytes += shared.size();
   });

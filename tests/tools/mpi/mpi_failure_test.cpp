@@ -55,6 +55,15 @@ TEST_F(MpiFailure, OfRanksThatAreNotAlike) {
                     "was given other arguments than rank 0 on ");
 }
 
+// As by srun without pmix: each process would render everything.
+TEST_F(MpiFailure, OfALauncherOfAnotherMpi) {
+  const std::string line = ranks_line(1), program = line.substr(line.rfind(" '"));
+  for (const char* name : {"PMI_SIZE", "SLURM_STEP_NUM_TASKS"}) {
+    const std::string start = std::string("env -u OMPI_COMM_WORLD_SIZE ") + name + "=3 " + program;
+    expect_failure_of(start + " render a.ply --size 16x16 -o a.png", 2, std::string("started 3 processes (") + name);
+  }
+}
+
 TEST_F(MpiFailure, OfAStreamThatRanksCannotShare) {
   expect_failure_of(ranks_line(2) + " animate - -o out < a.ply", 2,
                     "each process reads the frames that it renders, so they must be files");

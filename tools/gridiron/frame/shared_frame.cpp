@@ -147,7 +147,7 @@ void share_frame(std::optional<FrameMemory>& frame) {
     make_places(*frame, places);
   }
   const sim::MemoryRegion image{places.image, frame->memory.bytes_at(places.image, places.image_bytes)};
-  all.share_bytes(image.bytes, [&image](std::uint64_t begin, std::span<std::byte> shared) {
+  all.share_bytes(image.bytes, "the scene", [&image](std::uint64_t begin, std::span<std::byte> shared) {
     (void)sim::borrow_bytes({image.address.offset_by(begin), image.bytes.subspan(begin, shared.size())}, shared);
   });
 }

@@ -42,8 +42,8 @@ std::string_view obstacle_of(std::string_view key) {
 const MachineKey& find_key(const std::vector<MachineKey>& keys, std::string_view name) {
   const auto known = std::ranges::find(keys, name, &MachineKey::name);
   if (known == keys.end()) {
-    usage_error("--vary: unknown key " + in_quotes(name) + did_you_mean(name, keys_of_replays()) +
-                "; 'gridiron machines --help' lists them");
+    usage_error("--vary: unknown key " + in_quotes(name) + " ('gridiron machines --help' lists them)" +
+                did_you_mean(name, keys_of_replays()));
   }
   return *known;
 }

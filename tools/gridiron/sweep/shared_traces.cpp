@@ -51,7 +51,7 @@ SharedTraces::SharedTraces(sim::FrameTrace& trace) {
       place += packed.size();
     }
   }
-  all.share_bytes(region_.bytes, [this](std::uint64_t begin, std::span<std::byte> shared) {
+  all.share_bytes(region_.bytes, "the traces", [this](std::uint64_t begin, std::span<std::byte> shared) {
     (void)sim::borrow_bytes({region_.address.offset_by(begin), region_.bytes.subspan(begin, shared.size())}, shared);
   });
 }

@@ -106,6 +106,11 @@ std::string sweep_svg(std::span<const VariedKey> varied, std::span<const SweepFi
                         .x_title = varied.front().name,
                         .y_title = "frames a second",
                         .log_x = least > 0 && most > kLogarithmicSpan * least};
+  constexpr std::size_t kMostTicks = 12;  // that have room for their labels
+  if (numbers.size() <= kMostTicks) {
+    chart.x_ticks = numbers;
+    std::ranges::sort(chart.x_ticks);
+  }
   const std::size_t curves = machine_count(others);
   for (std::size_t i = 0; i < curves; ++i) {
     plot::Series& series =

@@ -23,7 +23,7 @@ namespace {
 using namespace gridiron;
 using tool::shortest_text;
 
-constexpr std::uint32_t kRanks[] = {1, 2, 4, 16, 64, 256, 1024, 4096};
+constexpr std::uint32_t kRanks[] = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096};
 constexpr double kHalf = 0.5;
 
 double positive(const char* text, const char* name) {
@@ -60,8 +60,8 @@ void run(int count, char** values) {
   }
   const std::string output = values[1];
   const scaling::Network network{positive(values[2], "LATENCY_SECONDS"), positive(values[3], "BYTES_PER_SECOND")};
-  plot::LineChart chart{.title = "Predicted speed-up: a message takes " + shortest_text(network.latency_seconds * 1e6) +
-                                 " us and " + shortest_text(network.bytes_per_second / 1e9) + " GB/s",
+  plot::LineChart chart{.title = "Model of gridiron_mpi: " + shortest_text(network.latency_seconds * 1e6) +
+                                 " us a message, " + shortest_text(network.bytes_per_second / 1e9) + " GB/s",
                         .x_title = "ranks",
                         .y_title = "times faster than 1 rank",
                         .log_x = true,
