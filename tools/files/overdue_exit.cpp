@@ -34,6 +34,8 @@ void arm(long nanoseconds) {
   (void)::timer_settime(timer, 0, &after, nullptr);
 }
 
+std::atomic<int> words_descriptor{STDERR_FILENO};
+
 // Prints as main does, without memory or locks.
 void say_interrupted() {
   char words[96] = "";
@@ -48,7 +50,7 @@ void say_interrupted() {
                                   : " files were written before that and are kept");
   }
   std::strcat(words, "\n");
-  (void)!::write(STDERR_FILENO, words, std::strlen(words));
+  (void)!::write(words_descriptor.load(), words, std::strlen(words));
 }
 
 }  // namespace
@@ -135,6 +137,10 @@ void note_written_files(std::size_t count) {
 
 void outputs_are_complete() {
   is_complete.store(true);
+}
+
+void say_overdue_exits_on(int descriptor) {
+  words_descriptor.store(descriptor);
 }
 
 void say_last_words(const char* words) {

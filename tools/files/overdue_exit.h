@@ -53,6 +53,9 @@ void note_written_files(std::size_t count);
 /// Undivided exists.
 void outputs_are_complete();
 
+/// From now on an overdue exit prints there. Before any signal that should.
+void say_overdue_exits_on(int descriptor);
+
 /// Prints on standard error how the command ended, unless an overdue exit has done so.
 void say_last_words(const char* words);
 

@@ -58,6 +58,11 @@ constexpr bool kIsShared = std::is_same_v<Request, RenderRequest> || std::is_sam
 
 }  // namespace
 
+ProgramEnd end_of(const Failure& failure) {
+  const char* prefix = failure.code() == ExitCode::kUsage ? "gridiron: " : "";
+  return {failure.code(), std::string(prefix) + failure.what() + (ranks().is_first() ? words_of_files(failure) : "")};
+}
+
 ProgramEnd run_program(int count, const char* const* values) {
   const bool is_first = ranks().is_first();
   try {
@@ -70,8 +75,7 @@ ProgramEnd run_program(int count, const char* const* values) {
     flush_text();
     return {};
   } catch (const Failure& failure) {
-    const char* prefix = failure.code() == ExitCode::kUsage ? "gridiron: " : "";
-    return {failure.code(), std::string(prefix) + failure.what() + (is_first ? words_of_files(failure) : "")};
+    return end_of(failure);
   } catch (const std::bad_alloc&) {
     std::string line;
     for (int i = 1; i < count; ++i) line += std::string(i == 1 ? "" : " ") + values[i];

@@ -66,6 +66,12 @@ void require_own_launcher(const MpiRanks& ranks) {
   }
 }
 
+// What is left is to wait for the others, or to say how this rank has failed.
+void end_interrupts() {
+  const Undivided step;
+  outputs_are_complete();
+}
+
 // A command that failed anywhere has failed everywhere.
 ProgramEnd run(MpiRanks& ranks, std::optional<MeasuredRanks>& measured, int count, const char* const* values) {
   try {
@@ -73,10 +79,12 @@ ProgramEnd run(MpiRanks& ranks, std::optional<MeasuredRanks>& measured, int coun
     ranks.require_alike(GRIDIRON_MPI_VERSION, joined(count, values));
     ProgramEnd end = run_program(count, values);
     if (end.code == ExitCode::kDone && measured) measured->write();
-    if (end.code == ExitCode::kDone) ranks.finish();
+    if (end.code != ExitCode::kDone) return end;
+    end_interrupts();
+    ranks.finish();
     return end;
   } catch (const Failure& failure) {
-    return {failure.code(), failure.what()};
+    return end_of(failure);
   }
 }
 
@@ -96,6 +104,7 @@ int main(int count, char** values) {
   if (costs) measured.emplace(*ranks, *costs);
   const RanksInUse in_use(measured ? static_cast<Ranks&>(*measured) : *ranks);
   const int error = ranks->is_first() ? STDERR_FILENO : silence();
+  say_overdue_exits_on(error);
   ProgramEnd end;
   {
     const CommandFiles files;
@@ -105,6 +114,7 @@ int main(int count, char** values) {
     if (ranks->is_first()) say_last_words(end.words.c_str());
   }
   if (!ranks->is_first()) {
+    end_interrupts();
     end.words.pop_back();
     ranks->report_failure(end.code, end.words);
     // Rank 0 has not heard: it is in a long call, or has ended.

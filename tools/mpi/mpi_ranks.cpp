@@ -198,7 +198,7 @@ void MpiRanks::look_for_message() {
 }
 
 void MpiRanks::attend() {
-  stop_if_interrupted();
+  if (!is_finishing_) stop_if_interrupted();
   if (!is_first()) {
     (void)has_told();
     return;
@@ -346,6 +346,7 @@ void MpiRanks::report_failure(ExitCode code, const std::string& message) {
 }
 
 void MpiRanks::finish() {
+  is_finishing_ = true;
   flush();
   MPI_Request request = MPI_REQUEST_NULL;
   check(MPI_Ibarrier(messages_, &request), "wait for other ranks");

@@ -73,6 +73,7 @@ class MpiRanks final : public Ranks {
   void flush();
 
   std::uint32_t rank_ = 0, count_ = 1, threads_ = 1;
+  bool is_finishing_ = false;  ///< interrupts change nothing any more
   int on_node_ = 1, rank_on_node_ = 0;
   MPI_Comm messages_ = MPI_COMM_NULL;
   MPI_Comm node_ = MPI_COMM_NULL;

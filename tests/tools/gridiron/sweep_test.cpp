@@ -1,5 +1,7 @@
 // render --vary: each machine's figures are those of a render with its machine file; files, order and refusals.
 // SPDX-License-Identifier: Apache-2.0
+#include "gridiron/sweep/sweep_files.h"
+#include "report/svg_plot.h"
 #include "gridiron/sweep/machine_sweep.h"
 
 #include <nlohmann/json.hpp>
@@ -81,6 +83,29 @@ TEST(Sweep, MachinesAreThoseOfMachineFiles) {
   }
   expect_renders_of_files(folder, kSweptFrame, "based_on cell-ps3-tlb\n", {"latency_seed=0,7"});
   expect_renders_of_files(folder, kSweptFrame, base, {"work_cycles.block=1,2", "core_count=3,2"});
+}
+
+// The cores of all machines, where these do not differ in them.
+TEST(Sweep, CoresAreThoseAskedFor) {
+  const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
+  (void)run(folder, Words{"render"} + kSweptFrame + Words{"--quiet", "--cores", "3", "--vary", "latency_cycles=500", "--sweep", "a.csv"});
+  (void)run(folder, Words{"render"} + kSweptFrame + Words{"--quiet", "--vary", "core_count=3", "--vary", "latency_cycles=500", "--sweep", "b.csv"});
+  const auto figures = [&folder](const char* name) {
+    const std::string text = read_file(folder.path(name));
+    return text.substr(text.find("500,", text.find('\n')));
+  };
+  EXPECT_EQ(figures("a.csv"), figures("b.csv"));
+}
+
+// A curve has the machines of its values.
+TEST(Sweep, CurvesAreThoseOfTheirMachines) {
+  const tool::VariedKey keys[] = {{"latency_cycles", {"100", "200", "300"}}, {"core_count", {"1", "2"}}};
+  std::vector<tool::SweepFigures> figures(6);
+  for (std::size_t i = 0; i < figures.size(); ++i) figures[i].seconds = 1 / (1.0 + static_cast<double>(i));
+  plot::LineChart chart{.title = "t", .x_title = "latency_cycles", .y_title = "frames a second"};
+  chart.series = {{"core_count 1", {{100, 1}, {200, 3}, {300, 5}}}, {"core_count 2", {{100, 2}, {200, 4}, {300, 6}}}};
+  chart.x_ticks = {100, 200, 300};
+  EXPECT_EQ(tool::sweep_svg(keys, figures, "t"), plot::line_chart_svg(chart));
 }
 
 // Waiting rays, each core's in a place of its own; three keys, the first slowest.

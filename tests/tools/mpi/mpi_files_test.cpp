@@ -21,8 +21,10 @@ TEST_F(MpiFiles, OfAPicture) {
   expect_same_files(folder_, common + Words{"--timeline", "OUT/t.json.txt"});
   expect_same_files(folder_, common + Words{"--configuration", "reference", "--repeat", "2"});
   expect_same_files(folder_, common + Words{"--mode", "plain"});
-  // All ranks encode it: seven bands.
-  expect_same_files(folder_, {"render", "a.ply", "--size", "1600x1100", "--mode", "plain", "-o", "OUT/a.png"});
+  // All ranks encode seven bands; four, the last of another rank than 0; two of three ranks two.
+  for (const char* size : {"1600x1100", "1000x800", "600x600"}) {
+    expect_same_files(folder_, {"render", "a.ply", "--size", size, "--mode", "plain", "-o", "OUT/a.png"});
+  }
 }
 
 // Rays that wait lie in main memory too.
@@ -76,8 +78,9 @@ TEST_F(MpiFiles, NotesAreThoseOfOneProcess) {
   Words files;
   for (int i = 0; i < 5; ++i) {
     files.push_back("s" + std::to_string(i) + ".nff");
-    folder_.write(files.back(), "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 40 40\n"
-                                "l 4 4 4\nf 1 0 0 1 0 0 0 0\ns 0 0 0 1\np 3 0 0 0 1 1 1 2 2 2\n");
+    const char* second = i == 1 ? "p 3 0 0 0 1 1 1 3 3 3\n" : "";  // rank 1 has more to say of it than of s3
+    folder_.write(files.back(), std::string("v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 40 40\n"
+                                "l 4 4 4\nf 1 0 0 1 0 0 0 0\ns 0 0 0 1\np 3 0 0 0 1 1 1 2 2 2\n") + second);
   }
   const auto lines_of = [](const std::string& text) {
     std::multiset<std::string> lines;
@@ -92,7 +95,7 @@ TEST_F(MpiFiles, NotesAreThoseOfOneProcess) {
     EXPECT_EQ(lines_of(alone.err).size(), notes) << alone.err;
     EXPECT_EQ(lines_of(ranks.err), lines_of(alone.err));
   };
-  expect_same_notes(files + Words{"--size", "40x40"}, 5);
+  expect_same_notes(files + Words{"--size", "40x40"}, 6);
   expect_same_notes({files.front(), "--size", "40x40", "--turntable", "5"}, 1);
   Words meshes;
   for (const char* name : {"b.ply", "c.ply", "d.ply", "e.ply"}) {
