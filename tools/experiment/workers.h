@@ -7,13 +7,11 @@
 #include <functional>
 
 #include "base/ranks.h"
+#include "base/share_work.h"
 
 namespace gridiron::experiment {
 
-/// Calls work(0) to work(count - 1), each once, the lowest first, on `threads` threads including the caller's, or on as
-/// many as the host can start. After an exception no further piece begins; that of the lowest piece is thrown once all
-/// threads have ended.
-void share_work(std::uint32_t threads, std::size_t count, const std::function<void(std::size_t)>& work);
+using tool::share_work;
 
 /// Results of pieces of work as bytes, for other ranks.
 struct ResultBytes {
@@ -21,7 +19,7 @@ struct ResultBytes {
   std::function<void(std::size_t, const tool::Bytes&)> unpack;  ///< takes the result of a piece of another rank
 };
 
-/// The same with the pieces divided among tool::ranks(). On return every rank has the results of all.
+/// As tool::share_work(), with the pieces divided among tool::ranks(). On return every rank has the results of all.
 void share_work(std::uint32_t threads, std::size_t count, const std::function<void(std::size_t)>& work,
                 const ResultBytes& results);
 

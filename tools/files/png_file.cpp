@@ -2,14 +2,10 @@
 // Source: PNG specification, third edition; RFC 1950 and RFC 1951. SPDX-License-Identifier: Apache-2.0
 #include "png_file.h"
 
-#include <gridiron/sim/host_workers.h>
-
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cstring>
-#include <exception>
 #include <iterator>
 #include <limits>
 #include <new>
@@ -22,6 +18,7 @@
 #endif
 
 #include "base/failure.h"
+#include "base/share_work.h"
 
 namespace gridiron::tool {
 namespace {
@@ -248,18 +245,7 @@ template <class EncodeBand>
 std::vector<PngBand> encode_bands(std::size_t count, std::uint32_t threads,
                                   const std::function<PngRows(std::size_t band)>& rows_of, EncodeBand encode_band) {
   std::vector<PngBand> bands(count);
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> stop{false};
-  const auto encode = [&](std::uint32_t) {
-    while (!stop) {
-      const std::size_t band = next++;
-      if (band >= count) return;
-      bands[band] = encode_band(rows_of(band));
-    }
-  };
-  const auto workers = static_cast<std::uint32_t>(std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(count, 1)));
-  const sim::WorkersEnd end = sim::run_workers(workers, 1, encode, [&stop] { stop = true; });
-  if (end.error != nullptr) std::rethrow_exception(end.error);
+  share_work(threads, count, [&](std::size_t band) { bands[band] = encode_band(rows_of(band)); });
   return bands;
 }
 

@@ -21,15 +21,13 @@ struct DividedFrame {
   std::optional<sim::FrameTiming> timing;  ///< where the traces were replayed as they came, and are gone
 };
 
-/// As render_on_chip(), by all ranks, each of which has prepared the frame. Pieces are claims of
-/// tiles (piece_of_rank()). A single tile (RenderPlan::tile) is rendered by rank 0 alone.
+/// As render_on_chip(), by all ranks, each of which has prepared the frame. Pieces (piece_of_rank()) are claims of
+/// tiles. A single tile (RenderPlan::tile) is rendered by rank 0 alone.
 ///
 /// A rank renders and sends as many tiles at a time as take it kSecondsAtOnce, but no more than kTilesAtOnce. That
 /// tiles of several such parts overlap in main memory is not checked.
-/// @param replay  where there are several ranks, the plan's machine replays the traces as they come, with these
-/// options;
-///                null: they are kept.
-/// Errors: Failure, and those of Ranks.
+/// @param replay  where there are several ranks: the plan's machine replays traces as they come, with these options.
+///                null: they are kept. Errors: Failure, and those of Ranks.
 [[nodiscard]] DividedFrame render_divided(FrameMemory& frame, const RenderPlan& plan, const sim::ReplayOptions* replay,
                                           const std::function<void(std::uint32_t done, std::uint32_t total)>& progress);
 inline constexpr std::uint32_t kTilesAtOnce = 256;

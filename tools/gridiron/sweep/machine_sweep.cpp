@@ -1,12 +1,9 @@
 // Machine sweep. SPDX-License-Identifier: Apache-2.0
 #include "machine_sweep.h"
 
-#include <gridiron/sim/host_workers.h>
 #include <report/report.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <mutex>
 #include <optional>
 #include <string_view>
@@ -15,6 +12,7 @@
 #include "base/numbers.h"
 #include "base/progress.h"
 #include "base/ranks.h"
+#include "base/share_work.h"
 #include "base/suggestion.h"
 #include "base/value_bytes.h"
 #include "base/words.h"
@@ -165,27 +163,18 @@ std::vector<SweepFigures> replay_sweep(sim::FrameTrace& trace, const sim::Machin
   const auto own_count = static_cast<std::size_t>(all.share_of(count));
   std::vector<SweepFigures> figures(count);
   Progress progress(!quiet && all.is_first(), "machines");
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> stop{false};
   std::mutex mutex;
   std::size_t done = 0;
-  const auto replay_some = [&](std::uint32_t) {
+  share_work(threads, own_count, [&](std::size_t k) {
+    stop_if_interrupted();
     SweptMachine machine(base, varied);
-    while (!stop) {
-      const std::size_t k = next++;
-      if (k >= own_count) return;
-      stop_if_interrupted();
-      const auto i = static_cast<std::size_t>(all.piece(k));
-      const sim::MachineProfile& on = machine.at(i);
-      figures[i] = figures_of(shared ? shared->replay(on) : sim::replay(trace, on, {}));
-      const std::lock_guard lock(mutex);
-      all.attend();
-      progress.update(++done, own_count);
-    }
-  };
-  const auto workers = static_cast<std::uint32_t>(std::clamp<std::size_t>(own_count, 1, std::max(threads, 1u)));
-  const sim::WorkersEnd end = sim::run_workers(workers, 1, replay_some, [&stop] { stop = true; });
-  if (end.error != nullptr) std::rethrow_exception(end.error);
+    const auto i = static_cast<std::size_t>(all.piece(k));
+    const sim::MachineProfile& on = machine.at(i);
+    figures[i] = figures_of(shared ? shared->replay(on) : sim::replay(trace, on, {}));
+    const std::lock_guard lock(mutex);
+    all.attend();
+    progress.update(++done, own_count);
+  });
   const auto pack = [&figures](std::size_t i) {
     ByteWriter writer;
     writer.add(figures[i]);
